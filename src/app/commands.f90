@@ -147,7 +147,7 @@ contains
          end associate
       end subroutine solve
 
-      !> The rows must not go into a file that the case was read from.
+      !> The rows must not replace a file that the case was read from.
       subroutine check_output()
          character(len=:), allocatable :: input
          integer :: i

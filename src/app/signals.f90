@@ -19,13 +19,13 @@ module rbs_app_signals
    integer, parameter :: longest = 4096
 
    !> Path of the file that is kept when the process is stopped, zero bytes if there is none, and the path
-   !> that it then gets; what is written of it, and its length.
+   !> that it then gets; the notice of it, and its length.
    character(kind=c_char), volatile :: own(longest) = c_null_char, partial(longest) = c_null_char
    character(len=2*longest) :: notice = ''
    integer(c_size_t), volatile :: notice_length = 0_c_size_t
 
    interface
-      !> In C: set what is done on a signal; what was done before.
+      !> In C: set the action on a signal; the result is the action before.
       type(c_funptr) function c_signal(number, action) bind(c, name='signal') result(before)
          import :: c_funptr, c_int
          implicit none
@@ -43,7 +43,7 @@ module rbs_app_signals
 
 contains
 
-   !> Set what is done on signals, and see to it that the standard streams are open.
+   !> Set the actions on signals, and make sure that the standard streams are open.
    subroutine prepare_process()
       integer(c_int), parameter :: signals(3) = [hangup, interrupt, termination]
       type(c_funptr) :: before
@@ -91,7 +91,7 @@ contains
       end do
    end subroutine put
 
-   !> Keep the unfinished file and end as the signal asks for.
+   !> Keep the unfinished file and end by the signal.
    subroutine on_signal(number) bind(c)
       integer(c_int), value :: number
       type(c_funptr) :: before

@@ -1,6 +1,6 @@
 !> Symmetric band matrices: the factor L D L' without pivots, in time and memory proportional to the number of
 !> unknowns, the number of negative pivots (by Sylvester that of negative eigenvalues), and systems with a
-!> border: the tangent of a structure, and what drives it.
+!> border: the tangent of a structure, and its driven load or displacement.
 !>
 !>     A x - a y = f,   c x = g
 !>
@@ -267,8 +267,8 @@ contains
       call scale_rows(self, 1, b)
    end subroutine solve_one
 
-   !> Solve with the factor as it is, also where the matrix is not positive definite: inverse iteration asks
-   !> for no more. A matrix with a scale is not for this.
+   !> Solve with the factor as it is, also where the matrix is not positive definite: inverse iteration needs
+   !> no more. A matrix with a scale is not for this.
    pure subroutine substitute(self, b)
       class(band_matrix), intent(in) :: self
       !> Right-hand side (size), replaced by the solution
@@ -350,7 +350,7 @@ contains
    end subroutine solve_bordered
 
    !> Block elimination. Where the matrix is not positive definite it is the mixed one: once from the left,
-   !> which gives most of y, and once from the right for what is missing.
+   !> which gives most of y, and once from the right for the rest.
    subroutine eliminate(self, f, g, x, y, regular)
       type(band_matrix), intent(inout) :: self
       real(wp), intent(in) :: f(:), g

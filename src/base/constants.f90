@@ -9,10 +9,10 @@ module rbs_base_constants
    !> Standard acceleration of gravity [m/s2].
    real(wp), parameter, public :: standard_gravity = 9.80665_wp
 
-   !> A slope or a pivot below this share of the initial stiffness is what round-off leaves of zero.
+   !> A slope or a pivot below this share of the initial stiffness is the round-off of zero.
    real(wp), parameter, public :: no_stiffness = 1.0e-12_wp
 
-   !> A deformation that is never reached: the end of a line that goes on for ever.
+   !> A deformation that is never reached: the end of a line without end.
    real(wp), parameter, public :: unbounded = huge(1.0_wp)
 
    !> In time deformations beyond this [m, rad] have no meaning, and their squares would overflow.

@@ -6,7 +6,7 @@ module rbs_base_cubic
 
    public :: cubic_at, turns_of, bound_of, largest_of, first_at
 
-   !> No cubic goes further beyond its ends than this share of the sum of its slopes there.
+   !> No cubic exceeds its end values by more than this share of the sum of its slopes there.
    real(wp), parameter, public :: beyond_ends = 4.0_wp/27.0_wp
 
 contains

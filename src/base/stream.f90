@@ -17,7 +17,7 @@ module rbs_base_stream
       integer :: count = 0
       !> Whether values are given back, else they are taken
       logical :: restoring = .false.
-      !> Whether more numbers were asked for than there are, or one that cannot be what it should be
+      !> Whether more numbers were asked for than there are, or one was found that is impossible
       logical :: broken = .false.
       !> Place of the last number that was taken or given back
       integer :: at = 0

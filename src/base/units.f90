@@ -128,7 +128,7 @@ contains
       end do
    end function converted
 
-   !> The unit of the user for one character of an SI unit, if the character stands for one: 'N' in 'N m', but
+   !> The unit of the user for one character of an SI unit, if the character means one: 'N' in 'N m', but
    !> not 'r' in 'rad'.
    pure subroutine unit_of_letter(self, unit, i, one, found)
       class(unit_system), intent(in) :: self

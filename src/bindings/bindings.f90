@@ -1,4 +1,4 @@
-! The only file that f2py reads: the entry points for Python. What can be evaluated is listed in
+! The only file that f2py reads: the entry points for Python. The questions are listed in
 ! `rbs_bindings_evaluate`.
 !
 ! f2py would treat real(wp) as a C float without a warning, so only c_double and c_int appear here.
@@ -6,9 +6,9 @@
 subroutine rbs_evaluate(what, statement, nn, number, names, m, input, control, answer, address, sizes)
    ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, and zero
    ! if there is nothing to read; `address` is that of its rows, which may be many and are not copied: Python
-   ! looks at them in place and releases them with the last array that shows them. `sizes`: status (0 success,
-   ! 1 the analysis failed, 2 bad input, 3 a long run that waits to be told), characters of the text, numbers
-   ! of the values, values of a row, and rows. Another thread may read and set `control`.
+   ! reads them in place and releases them with the last array that refers to them. `sizes`: status (0
+   ! success, 1 the analysis failed, 2 bad input, 3 a long run that was not started), characters of the text,
+   ! numbers of the values, values of a row, and rows. Another thread may read and set `control`.
    use iso_c_binding, only: c_double, c_int, c_loc
    use rbs_bindings_evaluate, only: evaluate
    use rbs_bindings_exchange, only: request_type, answer_type
@@ -32,7 +32,7 @@ subroutine rbs_evaluate(what, statement, nn, number, names, m, input, control, a
    sizes = 0
    if (allocated(found%error)) then
       sizes(1) = found%error%code
-      ! A run says its method before its error.
+      ! The method of a run precedes its error.
       if (.not. allocated(found%text)) found%text = ''
       found%text = found%text//found%error%message
    end if

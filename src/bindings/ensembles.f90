@@ -19,7 +19,7 @@ module rbs_bindings_ensembles
 
    public :: plan_ensemble, run_ensemble
 
-   !> Stands after each statement and each message, and between the number of what has failed and its message.
+   !> End of each statement and each message, and mark between the number of a fault and its message.
    character(len=1), parameter :: after = achar(30), after_number = achar(31)
 
 contains
@@ -110,7 +110,7 @@ contains
       if (text%length > 0) answer%text = text%text(:text%length)
    end subroutine run_ensemble
 
-   !> All motions stand one after the other, `points` has the number of points of each.
+   !> The motions follow each other in the arrays; `points` has the number of points of each.
    subroutine take_motions(request, motion)
       type(request_type), intent(in) :: request
       type(ensemble_motion), allocatable, intent(out) :: motion(:)
@@ -131,7 +131,7 @@ contains
    end subroutine take_motions
 
    !> The next column of the request: the statement holds those of all columns with their settings, each
-   !> followed by `after`, the arrays `watches` and `before` what all are watched for and the states that
+   !> followed by `after`, the arrays `watches` and `before` the limit states of all and the states that
    !> their runs begin in, and `counts` how many numbers, watches and numbers of its state each has.
    subroutine next_column(request, place, at, motion, column, error)
       type(request_type), intent(in) :: request

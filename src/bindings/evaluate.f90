@@ -53,12 +53,12 @@ contains
          call keys_as_json(buffer)
          answer%text = buffer%text(:buffer%length)
       case ('quantities')
-         ! A line each: values of rows with their units, measures of a run of an ensemble; then what belongs
-         ! to a section.
+         ! A line each: values of rows with their units, measures of a run of an ensemble; then names
+         ! of figures of a section.
          answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
                        line//list_of(spring_figures)//line//list_of(point_values)//line// &
                        list_of(shear_values)//line//list_of(profile_values)
-         ! What a run is noted for, by which runs of an ensemble are judged too.
+         ! Limits of the notes on a run, by which runs of an ensemble are judged too.
          answer%value = [largest_small, much]
       case ('check_spring', 'spring_response')
          call evaluate_spring()

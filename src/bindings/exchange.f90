@@ -1,4 +1,4 @@
-!> Exchange between Python and Fortran: a request, which names what is wanted and brings a text and
+!> Exchange between Python and Fortran: a request, which names a question and brings a text and
 !> numbers, and its answer, a text and numbers of any length.
 module rbs_bindings_exchange
    use, intrinsic :: iso_c_binding, only: c_double

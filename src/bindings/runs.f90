@@ -30,7 +30,7 @@ module rbs_bindings_runs
 
    public :: run_analysis, choose_method, watches_of
 
-   !> Code of the "error" that a long run of which the user has not been `told` was not started.
+   !> Code of the "error" that a long run was not started, as the user has not been `told` of it.
    integer, parameter :: long_run = 3
 
    !> Share of the run that has been completed, in parts of a thousand, which another thread reads.

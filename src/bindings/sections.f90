@@ -83,7 +83,7 @@ contains
             laws = section_laws(section, tension_place(given%tension), given%confined)
             select case (request%what)
             case ('axial_capacity')
-               ! Least and largest axial load without curvature, and the moments that go with them.
+               ! Least and largest axial load without curvature, and the moments at them.
                call axial_capacity(section, laws, least, most, strain)
                answer%value = [least%n, most%n, least%m, most%m]
             case ('moment_curvature')

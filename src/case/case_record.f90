@@ -56,7 +56,7 @@ module rbs_case_case_record
 
 contains
 
-   !> Make room for what a group gives.
+   !> Make room for the values of a group.
    subroutine open_group(self, group)
       class(case_record), intent(inout) :: self
       character(len=*), intent(in) :: group
@@ -144,7 +144,7 @@ contains
       system%mass = unit_named(mass_units, self%mass)
    end function system
 
-   !> Set what follows from other input: sources and units of the loadings, the method.
+   !> Set values that follow from other input: sources and units of the loadings, the method.
    subroutine settle(self)
       class(case_record), intent(inout) :: self
       logical :: moving, timed

@@ -71,7 +71,7 @@ module rbs_case_drawing_record
 
 contains
 
-   !> Make room for what a group gives.
+   !> Make room for the values of a group.
    subroutine open_group(self, group)
       class(drawing_record), intent(inout) :: self
       character(len=*), intent(in) :: group

@@ -27,7 +27,7 @@ module rbs_case_group_reader
       'case', 'units', 'column', frame_groups, 'damping', spring_groups, drawing_groups, 'loading', &
       'analysis', 'output']
 
-   !> The groups that Python gives of a section: the drawing, and last the three kinds of what is asked of it.
+   !> The groups that Python gives of a section: the drawing, and last the three kinds of requests.
    character(len=16), parameter, public :: section_groups(9) = [character(len=16) :: &
       'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'diagram', 'springs', 'shear']
 
@@ -258,7 +258,7 @@ contains
       end if
    end subroutine put_text
 
-   !> After all groups have been set: give the springs to the joints, or check what is asked of a section.
+   !> After all groups have been set: give the springs to the joints, or check the requests about a section.
    subroutine finish(self, messages)
       class(group_reader), intent(inout) :: self
       type(message_list), intent(inout) :: messages

@@ -47,7 +47,7 @@ contains
    end subroutine group_keys
 
    !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}},
-   !>  "section": {name: [key, ...]}}; the last are what Python asks of a section, and the sizes of shapes.
+   !>  "section": {name: [key, ...]}}; the last are requests about a section, and sizes of shapes.
    subroutine keys_as_json(buffer)
       type(text_buffer), intent(inout) :: buffer
       character(len=16), parameter :: section_parts(*) = [character(len=16) :: section_groups, shape_names]

@@ -80,7 +80,7 @@ contains
       end select
    end function rest_of
 
-   !> Put the layers of a joint on the lines on which they go on along a straight path.
+   !> Put the layers of a joint on their next lines along a straight path.
    subroutine update_branches(springs, i, turn, press)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
@@ -165,7 +165,7 @@ contains
    end function moment_on_plane
 
    !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
-   !> Its work is left to the caller, who knows the path.
+   !> Its work is left to the caller.
    subroutine put_on_plane(springs, i, rotation, axial_load, turn, press, first)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
@@ -181,7 +181,7 @@ contains
       if (first > 0) springs%events = springs%events + 1
    end subroutine put_on_plane
 
-   !> Springs that were restored go on under other axial loads: at their rotations layered joints go
+   !> Springs that were restored continue under other axial loads: at their rotations layered joints move
    !> straight to them. Those under the load that they have stay as they are, unless they were on planes and
    !> are to be on lines.
    subroutine change_axial_loads(springs, axial_load, from_planes)

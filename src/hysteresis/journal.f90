@@ -12,7 +12,7 @@ module rbs_hysteresis_journal
    type :: journal_type
       !> Whether changes are being saved
       logical :: open = .false.
-      !> Deformations with what is behind them, and works (count) at the start [m or rad, J]
+      !> Deformations with the coordinates behind them, and works (count) at the start [m or rad, J]
       real(wp), allocatable :: d(:), work(:)
       !> Number of branches left at the start; number of springs that have changed their branches since, and
       !> which (changed)
@@ -23,8 +23,8 @@ module rbs_hysteresis_journal
       !> The branches that they had (changed)
       type(segment), allocatable :: line(:)
       !> How those that are kept have changed since, in one move: the direction, 0 if there were several
-      !> moves or directions; the deformation beyond which they go through the same branches again; how many;
-      !> deformation and work where they entered the last one (count)
+      !> moves or directions; the deformation beyond which they pass through the same branches again; how
+      !> many; deformation and work where they entered the last one (count)
       integer, allocatable :: direction(:), branches(:)
       real(wp), allocatable :: beyond(:), d_entered(:), work_entered(:)
    contains
@@ -160,7 +160,7 @@ contains
       end select
    end subroutine return_memory
 
-   !> Discard what has been saved, and stop saving.
+   !> Discard the saved memories, and stop saving.
    subroutine forget(self)
       class(journal_type), intent(inout) :: self
 

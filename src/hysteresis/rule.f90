@@ -1,5 +1,5 @@
-!> The interface of a hysteresis rule. A rule holds the parameters of equal springs, which share it; what
-!> changes along the path of a spring is the memory of that spring.
+!> The interface of a hysteresis rule. A rule holds the parameters of equal springs, which share it; the part
+!> that changes along the path of a spring is the memory of that spring.
 module rbs_hysteresis_rule
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
@@ -22,10 +22,10 @@ module rbs_hysteresis_rule
 
    integer, parameter, public :: rule_length = 16, places_length = 32
 
-   !> The history variables of one spring. A rule whose present branch says all adds none; others extend this
+   !> The history variables of one spring. A rule whose present branch suffices adds none; others extend this
    !> type, and override both procedures.
    type :: rule_memory
-      !> Work that the flexural spring of the joint has taken up so far [J]; set before each event of a rule
+      !> Work of the flexural spring of the joint so far [J]; set before each event of a rule
       !> that `uses_flexural_work`
       real(wp) :: flexural_work = 0.0_wp
    contains
@@ -39,7 +39,7 @@ module rbs_hysteresis_rule
       real(wp) :: initial_stiffness = 0.0_wp
       !> Whether the spring decays with the work of the flexural spring of its joint
       logical :: uses_flexural_work = .false.
-      !> The memory of a virgin spring, not allocated where its branch says all, and its branch
+      !> The memory of a virgin spring, not allocated where its branch suffices, and its branch
       class(rule_memory), allocatable :: memory
       type(segment) :: branch
    contains
@@ -169,7 +169,7 @@ contains
 
    end subroutine check_relations
 
-   !> Compute what follows from the parameters alone, once they have been checked.
+   !> Compute the values that follow from the parameters alone, once they have been checked.
    subroutine prepare(self)
       class(rule_type), intent(inout) :: self
 

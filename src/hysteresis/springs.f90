@@ -17,15 +17,15 @@ module rbs_hysteresis_springs
 
    public :: spring_array, put_line, read_plane, follow_path, most_lines
 
-   !> Most lines within one move. More mean that a rule goes round in lines without length, which is an error
-   !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
+   !> Most lines within one move. More mean that a rule cycles through lines without length, which is an error
+   !> of the rule. The longest correct move closes all open inner loops in the memory of a rule.
    integer, parameter :: most_lines = 10000
 
    !> `count` springs in their present state. Assignment copies everything.
    type :: spring_array
       !> Number of springs
       integer :: count = 0
-      !> Present deformations (count) [m or rad], and behind them what the structure keeps with them, which
+      !> Present deformations (count) [m or rad], and behind them further coordinates of the structure, which
       !> moves as they do; present line: anchor and slope (count)
       real(wp), allocatable :: d(:), d0(:), f0(:), k(:)
       !> First and last deformation that belong to the present line (count). Where the end itself does not
@@ -47,8 +47,8 @@ module rbs_hysteresis_springs
       integer :: version = 0
       !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
-      !> Rules, which equal springs share, of the structure; rule and memory of each spring (count), and what
-      !> `mark` has saved
+      !> Rules, which equal springs share, of the structure; rule and memory of each spring (count), and
+      !> the memory that `mark` has saved
       type(spring_rules), pointer :: rules => null()
       type(spring_slot), allocatable :: slot(:)
       type(journal_type) :: journal
@@ -266,7 +266,7 @@ contains
       if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
    end subroutine leave
 
-   !> Put a spring exactly on the end of its line in a direction; from an open end it goes to the next line.
+   !> Put a spring exactly on the end of its line in a direction; from an open end it takes the next line.
    subroutine arrive(self, i, direction)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i, direction
@@ -332,8 +332,8 @@ contains
       call go_back(self)
    end subroutine restore
 
-   !> Move every spring from the mark to new deformations. Of those that go through branches that they went
-   !> through in the last move, all but the last one are not asked for again: the state is the same to the
+   !> Move every spring from the mark to new deformations. Of those that pass through the branches of
+   !> the last move, all but the last branch are reused: the state is the same to the
    !> last bit.
    subroutine retry(self, d)
       class(spring_array), intent(inout) :: self
@@ -412,7 +412,7 @@ contains
       if (self%axial_load_varies) call self%fit_planes()
    end subroutine go_back
 
-   !> Save or restore where the springs are, and what their rules remember.
+   !> Save or restore the deformations of the springs and the memory of their rules.
    subroutine serialize(self, stream)
       class(spring_array), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -495,7 +495,7 @@ contains
       call self%put(i, segment(f0=force), self%d(i), self%work(i))
    end subroutine release
 
-   !> Whether it was let go: no rule has a line without stiffness and without ends.
+   !> Whether its member was removed: no rule has a line without stiffness and without ends.
    pure logical function is_removed(self, i)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i
@@ -531,7 +531,8 @@ contains
       call advance_all(self, d)
    end subroutine move_all
 
-   !> Whether all springs can go to new deformations on their present lines, within the bounds of all meaning.
+   !> Whether all springs can move to new deformations on their present lines, within the bounds of all
+   !> meaning.
    pure logical function stay_on_lines(self, d)
       class(spring_array), intent(in) :: self
       !> New deformations (count) [m or rad]
@@ -583,7 +584,7 @@ contains
       end do
    end subroutine advance_pair
 
-   !> `advance_on_branch` for all springs at once, and what is behind them.
+   !> `advance_on_branch` for all springs at once, and the coordinates behind them.
    pure subroutine advance_all(self, d)
       type(spring_array), intent(inout) :: self
       real(wp), intent(in), contiguous :: d(:)
@@ -635,7 +636,7 @@ contains
       end do
    end subroutine fit_planes
 
-   !> Layered joints whose axial loads vary go straight to new rotations and to `target_axial_load`.
+   !> Layered joints whose axial loads vary move straight to new rotations and to `target_axial_load`.
    subroutine move_joints(self, d)
       type(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]

@@ -13,7 +13,7 @@ module rbs_hysteresis_straight_motion
 
 contains
 
-   !> Springs that cannot go the way they should on their lines.
+   !> Springs blocked on their lines in their direction of motion.
    pure subroutine find_blocked(springs, rate, blocked, count)
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: rate(:)
@@ -58,7 +58,7 @@ contains
       ends = 0
       associate (first => springs%first, last => springs%last)
          do i = 1, size(q)
-            ! The end itself may lie beyond the last deformation of the line: far beyond, as ways go, where
+            ! The end itself may lie beyond the last deformation of the line: far beyond, where
             ! the rate is next to nothing.
             if (rate(i) > 0.0_wp) then
                if (last(i) - q(i) > most*rate(i)) cycle
@@ -85,18 +85,18 @@ contains
       if (stride < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(stride, 0.0_wp)/rate
    end function distance
 
-   !> Springs go at constant rates from given deformations, each on its own line and not beyond its end, and
-   !> what is behind them goes too.
+   !> Springs move at constant rates from given deformations, each on its own line and not beyond its end, and
+   !> the coordinates behind them move too.
    pure subroutine go_along(springs, moving, q, rate, stride, slack, near, count)
       type(spring_array), intent(inout) :: springs
-      !> Number of springs that go, the first ones
+      !> Number of springs that move, the first ones
       integer, intent(in) :: moving
       !> From where (size of `d`), and the rates; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: stride
       !> Springs that come closer than this to the end of their line, in shares of the end, are near it
       real(wp), intent(in) :: slack
-      !> The springs near the ends that they go to, and how many they are
+      !> The springs near the ends that they approach, and their number
       integer, intent(out) :: near(moving), count
 
       associate (behind => springs%count + 1)

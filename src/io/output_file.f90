@@ -133,7 +133,7 @@ contains
       end if
    end subroutine open_own
 
-   !> Write a text. What is on the disk ends with a whole text, and lacks at most those of the last second.
+   !> Write a text. The file on the disk ends with a whole text, and lacks at most those of the last second.
    subroutine put(self, text, error)
       class(output_file), intent(inout) :: self
       character(len=*), intent(in) :: text

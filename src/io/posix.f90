@@ -1,4 +1,4 @@
-!> The functions of POSIX that files need beyond what Fortran offers.
+!> The functions of POSIX that files need and Fortran lacks.
 !>
 !> Fortran cannot open a file exclusively, waits for the other end of a pipe, and in gfortran 12 gives status
 !> 0 for writes on a full disk, so that a truncated file would look complete.
@@ -138,7 +138,7 @@ module rbs_io_posix
          integer(c_int), value :: mode
       end function c_access
 
-      !> In C: what a symbolic link says; -1 if the path is no link.
+      !> In C: the target of a symbolic link; -1 if the path is no link.
       integer(c_size_t) function c_readlink(path, text, length) bind(c, name='readlink') result(count)
          import :: c_char, c_int, c_size_t
          implicit none

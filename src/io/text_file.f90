@@ -158,7 +158,7 @@ contains
 
    end subroutine load_text
 
-   !> Read what is there, and wait if there is nothing yet: the number of bytes, 0 at the end, or
+   !> Read the bytes at hand, and wait if there are none yet: the number of bytes, 0 at the end, or
    !> `nobody_writes` or `cannot_read`.
    integer(c_size_t) function read_some(descriptor, text, at_start) result(count)
       integer(c_int), intent(in) :: descriptor

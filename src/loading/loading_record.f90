@@ -35,7 +35,7 @@ module rbs_loading_loading_record
       character(len=64) :: column = '', time_column = ''
       character(len=16) :: unit = ''
       real(wp) :: scale = 1.0_wp, interval = unset
-      !> A protocol of the literature, and what its amplitudes are counted in and go up to
+      !> A protocol of the literature, the unit of its amplitudes and the largest of them
       character(len=16) :: protocol = ''
       real(wp) :: reference = unset, largest = unset
       real(wp), allocatable :: amplitudes(:), negative_amplitudes(:)

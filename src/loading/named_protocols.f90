@@ -1,6 +1,6 @@
 !> Protocols of the literature by name: amplitudes and numbers of cycles.
 !>
-!> Sources, and what of them could be confirmed: docs/input.md, "Named protocols".
+!> Sources, and how far they could be confirmed: docs/input.md, "Named protocols".
 module rbs_loading_named_protocols
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
@@ -19,7 +19,7 @@ module rbs_loading_named_protocols
    !> Most steps; more are taken for a typing error.
    integer, parameter :: most_steps = 900
 
-   !> Amplitudes in ascending order with their cycles, and how they go on.
+   !> Amplitudes in ascending order with their cycles, and the rule of further ones.
    type :: ladder_type
       integer :: counted = in_drift
       !> Meaning of the reference of the protocol
@@ -38,13 +38,13 @@ module rbs_loading_named_protocols
 
 contains
 
-   !> Amplitudes and cycles of a protocol. A message names what is missing or too much.
+   !> Amplitudes and cycles of a protocol. A message names a value that is missing or too much.
    subroutine named_protocol(name, reference, largest, amplitudes, cycles, error)
       !> One of `protocol_names`
       character(len=*), intent(in) :: name
       !> The amplitude that the protocol is counted in; not above zero: not given
       real(wp), intent(in) :: reference
-      !> No amplitude goes beyond; not above zero: the end of the protocol itself
+      !> Bound of the amplitudes; not above zero: the end of the protocol itself
       real(wp), intent(in) :: largest
       real(wp), allocatable, intent(out) :: amplitudes(:)
       integer, allocatable, intent(out) :: cycles(:)

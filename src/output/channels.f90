@@ -1,6 +1,6 @@
 !> Channels of a row of a run: names, units and places of its values. The first are those of every structure,
 !> the others are stated by the structure. Solvers fill rows from a response; the csv, the summary and Python
-!> find what they need by the names of this list.
+!> find their values by the names of this list.
 module rbs_output_channels
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text

@@ -1,4 +1,4 @@
-!> Notes on a structure and on a run: what is allowed but perhaps not intended.
+!> Notes on a structure and on a run: input and results that are allowed but perhaps not intended.
 module rbs_output_notes
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_check, only: is_given
@@ -83,8 +83,8 @@ contains
                      'shorter dt')
    end subroutine run_notes
 
-   !> Rotations that are taken as small but have grown large. What is left out of sin(th) is th^2/6 of it, and
-   !> what is left out of cos(th), which lever arms contain, th^2/2: together 2 th^2/3.
+   !> Rotations that are taken as small but have grown large. The error of sin(th) is th^2/6 of it, and
+   !> that of cos(th), which lever arms contain, th^2/2: together 2 th^2/3.
    subroutine rotation_note(structure, summary, notes)
       class(structure_type), intent(in) :: structure
       type(summary_type), intent(in) :: summary
@@ -95,7 +95,7 @@ contains
       ! A run to its collapse was asked for, and its rotations are known to be large.
       if (summary%collapsed) return
       if (structure%kinematics == finite) return
-      ! A path is given; a response in time goes where it goes.
+      ! The displacements of a path are given, those of a response in time are not.
       if (.not. summary%time_step > 0.0_wp) then
          before = notes%count
          call drift_note(structure, summary%peak_displacement, notes)
@@ -273,7 +273,7 @@ contains
    end subroutine period_note
 
    !> Sizes in a wrong unit, springs that seem exchanged, loads of a column that do nothing, masses without
-   !> weight: each with what to do.
+   !> weight: each with a remedy.
    subroutine column_notes(spec, notes)
       !> Validated
       type(column_record), intent(in) :: spec
@@ -288,7 +288,7 @@ contains
          call notes%add("column: shear has the rule 'takeda' and flexure 'bilinear', usually it is the "// &
                         'other way round; exchange them if that is meant')
       end if
-      ! Axial springs and layers carry the load whatever the kinematics.
+      ! Axial springs and layers carry the load with all kinematics.
       carried = allocated(spec%axial_spring)
       carried = carried .or. any(spec%flexure%rule == 'layered')
       if (spec%kinematics == 'small' .and. .not. carried) then
@@ -318,7 +318,7 @@ contains
       type(message_list), intent(inout) :: notes
       real(wp) :: moment(1), least
 
-      ! What was drawn is judged where it is drawn; what never yields has no strength.
+      ! Drawn members are judged where they are drawn; springs that never yield have no strength.
       if (spec%flexure(1)%rule == 'layered' .or. spec%flexure(1)%rule == 'elastic') return
       call follow_path(spec%flexure(1), [0.05_wp], moment)
       if (spec%kinematics /= 'small' .and. spec%axial_load < 0.0_wp) then

@@ -1,4 +1,4 @@
-!> Where kept rows go: an array (Python) or a file (executable). The solver does not know which.
+!> Recorders of kept rows: an array (Python) or a file (executable). The solver does not know which.
 module rbs_output_recorder
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp

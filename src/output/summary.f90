@@ -25,7 +25,7 @@ module rbs_output_summary
       !> Largest shear force at the base in size, with sign [N]; largest absolute rotation of a body, in size
       !> [rad]
       real(wp) :: peak_base_shear = 0.0_wp, peak_rotation = 0.0_wp
-      !> Largest absolute acceleration of the top, in size [m/s2]; negative where it is not looked at
+      !> Largest absolute acceleration of the top, in size [m/s2]; negative where it is not recorded
       real(wp) :: peak_floor_acceleration = -1.0_wp
       !> Drift ratios of the storeys, the last ones and the largest in size (storeys); not allocated without
       !> storeys
@@ -60,13 +60,13 @@ module rbs_output_summary
       logical :: stopped = .false.
       !> Joint whose layers could not carry the axial load any more, where the analysis ended; 0: none
       integer :: lost_joint = 0
-      !> The axial load that it lost and what its layers can carry at that rotation, compression positive [N];
-      !> how far it falls before it rests, elongation positive [m], and the energy set free [J]
+      !> The axial load that it lost and the capacity of its layers at that rotation, compression positive
+      !> [N]; how far it falls before it rests, elongation positive [m], and the energy set free [J]
       type(layer_fall) :: fall
       !> Method that was used and, if the program chose it, why
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
-      !> Members that snapped or fell, and snap-backs over which no test goes
+      !> Members that snapped or fell, and snap-backs that no test follows
       character(len=400) :: remark = ''
       !> Steps in which members snapped, the member that lost most in one and when [s]; a member that fell; 0:
       !> none

@@ -53,7 +53,7 @@ contains
 
       call settle(section, laws, axial_load, 0.0_wp, state, found)
       if (found) return
-      ! The search may step over a narrow peak: where the section carries more it goes back from there.
+      ! The search may step over a narrow peak: where the section carries more, it returns from there.
       call axial_capacity(section, laws, least, most, strain)
       if (least%n <= axial_load .and. axial_load <= most%n) then
          state = state_type(eps0=strain(merge(2, 1, axial_load > 0.0_wp)))

@@ -48,7 +48,7 @@ module rbs_section_flexural_spring
       real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp, k_u_found = 0.0_wp
       !> Length of the hinge [m], rotation D_m of eq 7 [rad]
       real(wp) :: hinge_length = 0.0_wp, d_m = 0.0_wp
-      !> The points of the diagram that the line goes through, and the largest moment
+      !> The points of the diagram on the line, and the largest moment
       type(point_type) :: cracking, yield, peak, ultimate
    contains
       procedure :: as_array

@@ -1,4 +1,4 @@
-!> Makes a section from what is given of it.
+!> Makes a section from its record.
 !>
 !> Figures of a section and of points of its diagrams, with their names.
 !>
@@ -47,7 +47,7 @@ module rbs_section_section_build
 
 contains
 
-   !> Validate what is given and make the section.
+   !> Validate the record and make the section.
    subroutine make_section(record, section, error)
       type(section_record), intent(inout) :: record
       type(section_type), intent(out) :: section

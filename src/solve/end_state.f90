@@ -1,8 +1,8 @@
-!> The state that an analysis ended in, from which another one begins: deformations of the structure, what its
-!> springs remember, and what the solver needs to go on with the same bits.
+!> The state that an analysis ended in, from which another one begins: deformations of the structure, memory
+!> of its springs, and numbers that let the solver continue with the same bits.
 !>
-!> It is one list of numbers. Its head says to which structure it belongs and how the rest adds up, so that it
-!> can go through Python or a file.
+!> It is one list of numbers. Its head has marks of the structure and the sum of the rest, so that it
+!> can pass through Python or a file.
 module rbs_solve_end_state
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
@@ -22,7 +22,7 @@ module rbs_solve_end_state
 
    public :: end_state, checkpoint_type, static_state, moving_state
 
-   !> Changes when what is written here changes.
+   !> Number of the format; it changes with the contents.
    integer, parameter :: format = 3
 
    !> Numbers of the head: format, two of the model, two of the rest, bodies, kinematics, springs.
@@ -36,13 +36,13 @@ module rbs_solve_end_state
       integer :: kind = 0
       !> Whether the axial loads of layered joints varied
       logical :: axial_load_varies = .false.
-      !> Displacement of the top [m], lateral force [N], axial load at the top without what follows the
-      !> force [N]
+      !> Displacement of the top [m], lateral force [N], axial load at the top without the part that follows
+      !> the force [N]
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, axial_load = 0.0_wp
       !> Axial forces at the springs, compression positive (springs) [N]; velocities of the position
       !> (coordinates), zero after a static path
       real(wp), allocatable :: axial_force(:), v(:)
-      !> Works of loads and damping, energy at the start, what was missing from the balance [J]
+      !> Works of loads and damping, energy at the start, residual of the balance [J]
       real(wp) :: input = 0.0_wp, damping = 0.0_wp, at_begin = 0.0_wp, residual = 0.0_wp
       !> Kinetic energy that the velocities of the joints do not show [J]
       real(wp) :: along_joints = 0.0_wp
@@ -97,7 +97,7 @@ contains
       call stream%item(self%setting)
    end subroutine serialize_checkpoint
 
-   !> Begin a state with what every analysis has. What the solver remembers follows.
+   !> Begin a state with the part common to all analyses. The memory of the solver follows.
    subroutine start_saving(self, structure, checkpoint, springs)
       class(end_state), intent(inout) :: self
       class(structure_type), intent(in) :: structure
@@ -117,7 +117,7 @@ contains
       call springs%serialize(self%stream)
    end subroutine start_saving
 
-   !> The state is whole. One with a number that is none is not kept: nothing could go on from it.
+   !> The state is whole. One with a number that is not finite is not kept: no analysis could begin in it.
    subroutine finish_saving(self)
       class(end_state), intent(inout) :: self
 
@@ -170,8 +170,8 @@ contains
       end associate
    end subroutine check
 
-   !> Take up what every analysis has; springs are those of the structure, virgin. What the solver remembers
-   !> comes next in the stream.
+   !> Restore the part common to all analyses; springs are those of the structure, virgin. The memory of the
+   !> solver comes next in the stream.
    subroutine restore(self, structure, checkpoint, springs, error)
       class(end_state), intent(inout) :: self
       class(structure_type), intent(in) :: structure

@@ -22,7 +22,7 @@ module rbs_structure_channel
    end type row_contents
 
    !> Energies of a moment [J]: work of lateral force and ground motion; motion; springs; damping; potential
-   !> of the axial forces; lost where members snapped; what is left of the balance.
+   !> of the axial forces; lost where members snapped; residual of the balance.
    type :: energy_type
       real(wp) :: input = 0.0_wp, kinetic = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp, axial = 0.0_wp, &
                   snaps = 0.0_wp, residual = 0.0_wp
@@ -33,9 +33,9 @@ module rbs_structure_channel
       !> Time [s] or number of the point; displacement of the top [m]; lateral force [N]
       real(wp) :: time = 0.0_wp, displacement = 0.0_wp, force = 0.0_wp
       type(energy_type) :: energy
-      !> In time: acceleration of the ground [m/s2], with damping what the ground holds the structure with
-      !> along x [N]; velocities of the springs, forces with those of the damping and, where the rows ask for
-      !> them, accelerations (springs)
+      !> In time: acceleration of the ground [m/s2], with damping the force by which the ground holds the
+      !> structure along x [N]; velocities of the springs, forces with those of the damping and, where the
+      !> rows ask for them, accelerations (springs)
       real(wp) :: ground = 0.0_wp, base_shear = 0.0_wp
       real(wp), allocatable :: v(:), f(:), a(:)
    end type response_type

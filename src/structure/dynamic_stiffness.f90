@@ -95,7 +95,7 @@ contains
    !> The dynamic stiffness of bands, from which held unknowns are taken out.
    subroutine create(self, inertias, is_held, stiffness, geometric)
       class(dynamic_stiffness), intent(out) :: self
-      !> Masses, and what supports hold (unknowns)
+      !> Masses, and whether supports hold an unknown (unknowns)
       real(wp), intent(in) :: inertias(:)
       logical, intent(in) :: is_held(:)
       !> K and K_G (half-width + 1, unknowns); the latter only where axial forces count

@@ -34,8 +34,8 @@ module rbs_structure_structure
    !> Forces on the unknowns per unit of a signal.
    type :: load_pattern
       real(wp), allocatable :: force(:)
-      !> What they do on the deformations of the springs, where these are the coordinates of a position; else
-      !> not allocated (coordinates)
+      !> Forces conjugate to the deformations of the springs, where these are the coordinates of a position;
+      !> else not allocated (coordinates)
       real(wp), allocatable :: arm(:)
       !> First and last unknown that has any; none if the last is less than the first
       integer :: first = 1, last = 0
@@ -74,7 +74,7 @@ module rbs_structure_structure
       !> The body, or the part of it that is coupled, that an unknown belongs to (unknowns)
       integer, allocatable :: part(:)
       type(unknown_group), allocatable :: group(:)
-      !> Height for moments, 1 for forces: what brings those of one group to one unit (unknowns); not
+      !> Height for moments, 1 for forces: factors that bring those of one group to one unit (unknowns); not
       !> allocated where no group has both
       real(wp), allocatable :: reach(:)
       !> Where the springs are, their rules and initial stiffness, and the constant axial force at each,
@@ -82,7 +82,7 @@ module rbs_structure_structure
       type(spring_place), allocatable :: place(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
-      !> Displacement of the top per coordinate, for small rotations: what static paths control (coordinates)
+      !> Displacement of the top per coordinate, for small rotations, which static paths control (coordinates)
       real(wp), allocatable :: arm(:)
       !> The same per unknown (unknowns)
       real(wp), allocatable :: control(:)
@@ -193,7 +193,7 @@ module rbs_structure_structure
       !> Work array of the structure (work_size)
       real(wp), allocatable :: work(:)
       !> Tangent for the stiffness of the springs (tangent_numbers), and changes of the coordinates that bring
-      !> what lies between the unknowns to equilibrium (coordinates, or none)
+      !> the parts between the unknowns to equilibrium (coordinates, or none)
       real(wp), allocatable :: tangent(:), correction(:)
       !> Resistance of the springs against deformation from `anchor`, as a share of their initial stiffness,
       !> in the search for one of several states; 0 in equilibrium. Position where it begins
@@ -236,7 +236,7 @@ module rbs_structure_structure
          real(wp), intent(inout), contiguous :: f(:)
          !> (unknowns) [N, N m]
          real(wp), intent(out), contiguous :: g(:)
-         !> Of the deformations, to bring what lies between the unknowns to equilibrium (springs, or none)
+         !> Of the deformations, to bring the parts between the unknowns to equilibrium (springs, or none)
          real(wp), intent(inout), contiguous :: correction(:)
          !> Share of the dead load of a frame that acts; without it, all
          real(wp), intent(in), optional :: dead
@@ -256,7 +256,7 @@ module rbs_structure_structure
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
-         !> Stiffness of the springs, and what follows from it (see `linearise`)
+         !> Stiffness of the springs, and the tangent of it (see `linearise`)
          real(wp), intent(in), contiguous :: k(:), tangent(:)
          !> (half_width + 1, unknowns)
          real(wp), intent(inout), contiguous :: band(:, :)
@@ -612,7 +612,7 @@ contains
       real(wp), intent(inout), contiguous :: g(:)
    end subroutine damp
 
-   !> Add what these forces are per velocity, times a factor, to a band.
+   !> Add the derivative of these forces by velocity, times a factor, to a band.
    subroutine add_damping(self, factor, tangent, band)
       class(structure_type), intent(in) :: self
       real(wp), intent(in) :: factor

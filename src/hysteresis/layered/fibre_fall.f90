@@ -3,7 +3,7 @@
 !>
 !> At a fixed rotation the joint closes (or opens, where tension is lost) from end to end of the branches of
 !> its layers. It rests at the first point at which the layers carry the load again and their stiffness ahead
-!> is positive; what the load does on the way beyond the work of the layers is set free.
+!> is positive; the work of the load beyond that of the layers is set free.
 module rbs_hysteresis_layered_fibre_fall
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
@@ -47,7 +47,7 @@ contains
       most = 0.0_wp
       work = 0.0_wp
       do event = 1, 1000 + 1000*copy%count
-         ! Every layer on the branch on which it goes on.
+         ! Every layer on its next branch.
          do i = 1, copy%count
             call copy%go_on(i, way)
          end do

@@ -7,7 +7,7 @@ module rbs_hysteresis_layered_fibre_kernels
 
    public :: add_lines, look_along, look_back
 
-   !> Added to what must not count as nearest
+   !> Added to distances that must not count as nearest
    real(wp), parameter :: far_away = 1.0e120_wp
 
 contains
@@ -49,10 +49,10 @@ contains
       !> is 0, else 0
       real(wp), intent(in) :: slack(n), unload_on_reversal(n), both_ways(n)
       real(wp), intent(in) :: w, phi, open, turn
-      !> Rates up to this count as zero; what is added to `slack` [m]
+      !> Rates up to this count as zero; addition to `slack` [m]
       real(wp), intent(in) :: least_rate, room
       !> Ways to the ends, in units of the rates, and the least of them; not above zero if a layer is on the
-      !> end that it goes to, or unloads on a reversal
+      !> end that it approaches, or unloads on a reversal
       real(wp), intent(out) :: ahead(n), nearest, least_room
       !> Whether any layer is on a branch that unloads on reversal
       logical, intent(out) :: any_unloads

@@ -1,5 +1,5 @@
-!> Straight paths of a fibre section in rotation and axial load: the branches on which its layers go on, and
-!> the way from event to event.
+!> Straight paths of a fibre section in rotation and axial load: the branches on which its layers continue,
+!> and the way from event to event.
 module rbs_hysteresis_layered_fibre_path
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
@@ -52,8 +52,8 @@ contains
       self%failed = .true.
    end subroutine go
 
-   !> Put every layer on the branch on which it goes on along a straight path from the present point, and find
-   !> how far the path goes on these branches.
+   !> Put every layer on its branch along a straight path from the present point, and find
+   !> the length of the path on these branches.
    subroutine choose_branches(self, turn, press)
       type(fibre_section), intent(inout) :: self
       !> Rates of the rotation [rad] and of the axial load [N]
@@ -92,7 +92,7 @@ contains
       call set_ends(self)
    end subroutine choose_branches
 
-   !> The layer that has come to its end leaves its branch, if it goes on in that direction.
+   !> The layer at the end of its branch leaves it, if it continues in that direction.
    subroutine leave_end(self)
       type(fibre_section), intent(inout) :: self
       real(wp) :: v
@@ -123,7 +123,7 @@ contains
                       self%ends%ahead, least_room, self%ends%unload_on_reversal, self%ends%stiffness)
    end subroutine look_ahead
 
-   !> How far the chosen path goes, ahead and back, until a layer reaches the end of its branch.
+   !> Length of the chosen path, ahead and back, until a layer reaches the end of its branch.
    pure subroutine set_ends(self)
       type(fibre_section), intent(inout) :: self
       integer :: i
@@ -161,7 +161,7 @@ contains
    !>
    !>     G(x) = sum k_i(v_i) v_i = -dN,        v_i = x + y_i dphi
    !>
-   !> with the slopes of the branches on which each layer would go on opening and closing. Without softening G
+   !> with the slopes of the branches on which each layer would open and close. Without softening G
    !> rises and the root is unique; of several the one nearest to the present rate is taken; none means that
    !> the layers cannot carry the axial load.
    subroutine weigh_both_ways(self)
@@ -257,7 +257,7 @@ contains
 
    end subroutine weigh_both_ways
 
-   !> Slope of the branch on which a layer would go on in a direction. It goes there and back again.
+   !> Slope of the branch on which a layer would continue in a direction. It is moved there and back.
    real(wp) function slope_ahead(self, i, way) result(k)
       type(fibre_section), intent(inout) :: self
       integer, intent(in) :: i, way

@@ -13,7 +13,7 @@
 !>
 !> On a straight path in (phi, N) every layer moves at a constant rate  v_i = x + y_i dphi, and the branches
 !> hold until the first layer reaches an end of its own (`rbs_hysteresis_layered_fibre_path`). Nothing is
-!> added up along the path: w is corrected by what is missing from equilibrium wherever a branch changes.
+!> added up along the path: w is corrected by the residual of equilibrium wherever a branch changes.
 !>
 !> A layer that represents several equal ones at one place counts with its weight.
 module rbs_hysteresis_layered_fibre_section
@@ -33,16 +33,16 @@ module rbs_hysteresis_layered_fibre_section
    real(wp), parameter :: on_the_end = 1.0e-13_wp, no_rate = 1.0e-13_wp
    !> A rate below this is none.
    real(wp), parameter :: least_speed = 1.0e-150_wp
-   !> Where a path comes back to zero, what is left is round-off of the largest deformation so far.
+   !> Where a path comes back to zero, the rest is round-off of the largest deformation so far.
    real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
    !> Branches without length that one layer may pass at one point.
    integer, parameter :: most_branches = 8
    !> In the arrays of the ends, the number for none.
    real(wp), parameter :: no_end = 1.0e140_wp
-   !> Below this share, what is missing from equilibrium is not put right: its round-off would move the joint.
+   !> Below this share the residual of equilibrium is not corrected: its round-off would move the joint.
    real(wp), parameter :: firm = 1.0e-6_wp
 
-   !> How far a path goes on the present branches, in units of its rates.
+   !> Length of a path on the present branches, in units of its rates.
    type :: path_ends
       !> Ahead and back; `unbounded` if no layer reaches an end
       real(wp) :: ahead = unbounded, behind = unbounded
@@ -69,11 +69,11 @@ module rbs_hysteresis_layered_fibre_section
       real(wp) :: a = 0.0_wp, s = 0.0_wp, q = 0.0_wp, force_0 = 0.0_wp, moment_0 = 0.0_wp
       !> Moment of the layers [N m]
       real(wp) :: moment = 0.0_wp
-      !> The path that the lines were chosen for: rates of rotation, axial load and opening; how far it goes
+      !> The path that the lines were chosen for: rates of rotation, axial load and opening; its length
       real(wp) :: turn = 0.0_wp, press = 0.0_wp, open = 0.0_wp
       type(path_ends) :: ends
-      !> Whether no equilibrium of the axial load lies ahead, and the way the joint then goes: -1 it closes
-      !> (compression is lost), +1 it opens
+      !> Whether no equilibrium of the axial load lies ahead, and the direction of the joint then: -1 it
+      !> closes (compression is lost), +1 it opens
       logical :: failed = .false.
       integer :: failure_way = 0
    end type section_state
@@ -209,7 +209,7 @@ contains
       deformation = self%opening + self%y(i)*self%rotation
    end function deformation
 
-   !> A layer goes on beyond the end of its branch, or unloads on a reversal. `sum_up` is left to the caller.
+   !> A layer passes the end of its branch, or unloads on a reversal. `sum_up` is left to the caller.
    subroutine leave(self, i, way)
       class(fibre_section), intent(inout) :: self
       integer, intent(in) :: i
@@ -232,8 +232,8 @@ contains
       if (i == self%on_end) self%on_end = 0
    end subroutine leave
 
-   !> Whether a layer that goes in a direction leaves its branch at once: it unloads on the reversal, or is at
-   !> the end within the round-off of its deformation.
+   !> Whether a layer that moves in a direction leaves its branch at once: it unloads on the reversal, or is
+   !> at the end within the round-off of its deformation.
    pure logical function must_leave(self, i, way)
       class(fibre_section), intent(in) :: self
       integer, intent(in) :: i, way
@@ -245,7 +245,7 @@ contains
       must_leave = way*(far - self%deformation(i)) <= self%room_in_digits() + on_the_end*abs(far)
    end function must_leave
 
-   !> Put a layer that goes in a direction on the branch on which it goes on. `sum_up` is left to the caller.
+   !> Put a layer that moves in a direction on its next branch. `sum_up` is left to the caller.
    subroutine go_on(self, i, way)
       class(fibre_section), intent(inout) :: self
       integer, intent(in) :: i, way
@@ -364,7 +364,7 @@ contains
    end subroutine look_at
 
    !> Put the joint on a point of its present branches that lies ahead on a path with given rates. Its work is
-   !> left to the caller, who knows the path.
+   !> left to the caller.
    pure subroutine put(self, rotation, axial_load, turn, press, first)
       class(fibre_section), intent(inout) :: self
       !> Rotation of the joint, counted from `rest`; axial load, and rates

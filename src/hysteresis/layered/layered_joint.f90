@@ -128,13 +128,13 @@ contains
       type(segment), intent(out) :: branch
       real(wp) :: near, far
 
-      ! Both ends belong to the branch: where a joint stands exactly on a corner, as one of contacts without
+      ! Both ends belong to the branch: where a joint is exactly on a corner, as one of contacts without
       ! an axial load does at rest, it would otherwise have no branch.
       call choose_branches(section, real(direction, wp), 0.0_wp)
       branch%d0 = section%rotation - section%rest
       branch%f0 = section%moment
       if (section%failed) then
-         ! The joint keeps its moment for the rest of the motion; whoever moves it asks `failed`.
+         ! The joint keeps its moment for the rest of the motion; its caller tests `failed`.
          call branch%lead_outward(direction, near=(branch%d0), far=direction*unbounded)
          return
       end if

@@ -224,7 +224,7 @@ contains
       meeting = max(start + self%f(self%last)/k, self%d(self%last))
    end function meeting
 
-   !> Save or restore what deterioration has made of the backbone.
+   !> Save or restore the backbone after deterioration.
    pure subroutine serialize(self, stream)
       class(backbone_side), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -270,7 +270,7 @@ contains
       end subroutine key
    end subroutine visit
 
-   !> A side; what is not given of it is as on the other side.
+   !> A side; values that are not given are those of the other side.
    pure type(backbone_parameters) function completed(self, other)
       class(backbone_parameters), intent(in) :: self, other
 

@@ -196,7 +196,7 @@ contains
       end associate
    end subroutine end_excursion
 
-   !> Without force the motion goes toward side s, which deteriorates.
+   !> Without force the motion is toward side s, which deteriorates.
    subroutine enter(spring, s, zero)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s

@@ -103,7 +103,7 @@ module rbs_hysteresis_rules_capped_lines
       procedure :: serialize
    end type capped_memory
 
-   !> A spring at an event: its part, and what the event changes.
+   !> A spring at an event: its part, and the state that the event changes.
    type :: capped_spring
       type(capped_part), pointer :: part => null()
       type(capped_state), pointer :: now => null()
@@ -138,7 +138,7 @@ contains
       outermost_rest = max(spring%now%start_at, spring%now%closed_start - release*(d - spring%now%closed_at))
    end function outermost_rest
 
-   !> Energy that is dissipated at a turn: without what the stiffest unloading would return [J]. It never
+   !> Energy that is dissipated at a turn, less that of the stiffest unloading [J]. It never
    !> decreases along a line.
    real(wp) function spent_at(spring, f)
       type(capped_spring), intent(inout) :: spring
@@ -184,7 +184,7 @@ contains
       end associate
    end function virgin_unloading
 
-   !> The backbone and the peak of a side as they are after what the other side has dissipated.
+   !> The backbone and the peak of a side after the dissipation on the other side.
    subroutine deteriorate(spring, s)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s

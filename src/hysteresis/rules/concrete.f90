@@ -6,14 +6,14 @@
 !> before the plastic closing is reached (Stanton and McNiven 1979 call it focal point), which makes the
 !> closing of a crack gradual.
 !>
-!> Between the envelope and zero force the spring follows an elastic path of two lines. What changes this
-!> path does so while there is no force, or on the envelope in such a way that the path never stores more
+!> Between the envelope and zero force the spring follows an elastic path of two lines. This path changes
+!> only without force, or on the envelope in such a way that the path never stores more
 !> than the envelope gave: closed loops give no energy. Every change is in proportion to the movement that
 !> causes it: small reversals have small effects.
 !>
 !> With `friction` the path of opening has only a share of the force of the path of closing. Between the two
-!> the spring moves with its initial stiffness, as a block that rubs: what is closed and opened again takes
-!> up energy, whether the crack opens or not.
+!> the spring moves with its initial stiffness, as a block that rubs: a crack that closes and opens again
+!> takes up energy, whether the crack opens or not.
 module rbs_hysteresis_rules_concrete
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
@@ -80,7 +80,7 @@ module rbs_hysteresis_rules_concrete
       procedure :: next
    end type concrete_rule
 
-   !> A spring at an event: its rule, and what the event changes.
+   !> A spring at an event: its rule, and the state that the event changes.
    type :: concrete_spring
       type(concrete_rule), pointer :: rule => null()
       type(concrete_state), pointer :: now => null()
@@ -258,7 +258,7 @@ contains
       real(wp) :: largest, share
 
       associate (rule => spring%rule, now => spring%now)
-         ! Crushing wears down what keeps the faces apart: gap times force does not grow, or the path of
+         ! Crushing wears down the unevenness of the faces: gap times force does not grow, or the path of
          ! unloading would store more than the envelope has given.
          largest = f
          if (c > rule%d_peak) largest = rule%f_peak

@@ -4,10 +4,10 @@
 !>
 !>     left = 1 - (E/E_t)^c,   E_t = lambda f_y d_y,   E = energy dissipated so far
 !>
-!> For strength, softening line and target of a side, E is what all excursions to the other side have
-!> dissipated, for the unloading stiffness that of both sides. In the source each excursion takes the share
-!> (E/(E_t - sum E))^c of what is left. For c = 1 and small excursions in one direction both are the same; but
-!> there an excursion and its two halves differ, so that a reversal of any size changes the response.
+!> For strength, softening line and target of a side, E is the energy that all excursions to the other side
+!> have dissipated, for the unloading stiffness that of both sides. In the source each excursion takes the
+!> share (E/(E_t - sum E))^c of the rest. For c = 1 and small excursions in one direction both are the same;
+!> but there an excursion and its two halves differ, so that a reversal of any size changes the response.
 module rbs_hysteresis_rules_deterioration
    use rbs_base_kinds, only: wp
    implicit none

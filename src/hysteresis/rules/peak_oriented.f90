@@ -31,7 +31,7 @@ module rbs_hysteresis_rules_peak_oriented
       integer :: parts = 1
       real(wp) :: share = 1.0_wp
       !> Energies that deterioration of strength, softening line, unloading stiffness and target last for, and
-      !> work of the flexural spring that halves what can decay, over f_y d_y; 0: none
+      !> work of the flexural spring that halves the strength that can decay, over f_y d_y; 0: none
       real(wp) :: lambda(4) = 0.0_wp, lambda_h = 0.0_wp
    contains
       procedure :: visit
@@ -197,7 +197,7 @@ contains
       end select
    end subroutine next
 
-   !> A part goes on to its next branch if the present one ends here, or if it unloads on a reversal.
+   !> A part changes to its next branch if the present one ends here, or if it unloads on a reversal.
    subroutine follow(part, memory, branch, here, direction)
       type(capped_part), intent(in) :: part
       type(capped_memory), intent(inout) :: memory

@@ -3,9 +3,9 @@
 !>
 !> Two parts with the same backbone act in parallel (`rbs_hysteresis_rules_capped`). One has the share kappa_f
 !> of the force and is peak-oriented. The other slips: it has no force before the deformation
-!> (1 - kappa_d) d_per, where unloading from the peak ends at d_per, and goes to the peak from there. So the
-!> line from zero force to the peak has its break there, with kappa_f times the force of the straight line, as
-!> in the source, and what holds for each part holds for both.
+!> (1 - kappa_d) d_per, where unloading from the peak ends at d_per, and reloads to the peak from there. So
+!> the line from zero force to the peak has its break there, with kappa_f times the force of the straight
+!> line, as in the source, and each property of the parts is one of both.
 module rbs_hysteresis_rules_pinching
    use rbs_base_constants, only: unset
    use rbs_base_key_visitor, only: key_visitor

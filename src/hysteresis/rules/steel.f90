@@ -280,7 +280,8 @@ contains
       end subroutine find_limits
 
       !> Factor of the wear: a bar that has been stretched beyond `d_buckle` bows when it is compressed, and
-      !> what is bowed and straightened cracks. The largest elongation is settled where the bar turns back.
+      !> a bar that is bowed and straightened cracks. The largest elongation is settled where the bar turns
+      !> back.
       real(wp) function bowing(direction)
          integer, intent(in) :: direction
 

@@ -84,7 +84,7 @@ module rbs_hysteresis_rules_takeda
       procedure :: next
    end type takeda_rule
 
-   !> A spring at an event: its rule, and what the event changes.
+   !> A spring at an event: its rule, and the state that the event changes.
    type :: takeda_spring
       type(takeda_rule), pointer :: rule => null()
       type(takeda_state), pointer :: now => null()

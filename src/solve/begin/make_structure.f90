@@ -21,7 +21,7 @@ module rbs_solve_begin_make_structure
    !> Lowest modes among which that of the lateral load is sought: the one that moves most mass along x.
    integer, parameter :: modes_along = 10
 
-   !> Stiffness of an unknown over what is left of it where others are free, beyond which too few digits stay;
+   !> Ratio of the stiffness of an unknown to that with others free, beyond which too few digits stay;
    !> share of the softest member that others are taken down to where a mechanism is distinguished from
    !> round-off.
    real(wp), parameter :: most_lost = 1.0e10_wp, like_stiffness = 1.0e3_wp

@@ -26,7 +26,7 @@ module rbs_solve_ensemble_block
    !> Tells `run_block` to run everything without lanes.
    integer, parameter :: without_lanes = -1
 
-   !> Fewer runs go faster one after the other: a step of the lanes takes about as long as that of these
+   !> Fewer runs are faster one after the other: a step of the lanes takes about as long as that of these
    !> alone, however many lanes are empty.
    integer, parameter :: min_batch = 4
 
@@ -159,7 +159,7 @@ contains
          end associate
          control(2) = control(2) + 1
       end do
-      ! The columns in lanes all have damping or none has, and go by one method.
+      ! The columns in lanes all have damping or none has, and one method.
       task = task(:tasks)
       do while (size(task) > 0)
          allocate (together(size(task)))

@@ -98,7 +98,7 @@ module rbs_solve_ensemble_lane_arrays
          integer, intent(out) :: count, list(lanes)
       end subroutine advance_interface
 
-      !> After a step of all lanes: the clock and what is measured. Lanes whose runs have ended are listed.
+      !> After a step of all lanes: the clock and the measures. Lanes whose runs have ended are listed.
       subroutine finish_interface(x, y, m, time, acceleration, count, list)
          import :: lane_clock, body_arrays, lanes, wp
          implicit none

@@ -1,4 +1,4 @@
-!> Lanes whose springs leave their lines: they follow what the kernel has found,
+!> Lanes whose springs leave their lines: they follow the result of the kernel,
 !> with all numbers in one record, without the state of a run alone. The record is the same for all lanes, so
 !> that it stays near the processor; a lane keeps its lines.
 module rbs_solve_ensemble_one_body_lane
@@ -88,7 +88,7 @@ contains
          if (side_of(spring, y%q(l, i)) == 0) then
             call advance_on_branch(spring, y%q(l, i))
          else
-            ! The first spring may decay with what the second has done up to the start of the step.
+            ! The first spring may decay with the work of the second up to the start of the step.
             call move_spring(spring, springs%slot(i), y%q(l, i), y%work(l, 2), events, springs%stuck)
             if (springs%stuck) return
             springs%events = springs%events + events
@@ -180,7 +180,8 @@ contains
       y%direction(l, i) = real(spring%line%unload_on_reversal, wp)
    end subroutine spring_to_lane
 
-   !> The lines of the springs of a run alone, on which the next steps start, and what these need of them.
+   !> The lines of the springs of a run alone, on which the next steps start, and the constants of these
+   !> steps.
    subroutine lines_to_lane(x, y, l, state, body, implicit, line)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(in) :: y

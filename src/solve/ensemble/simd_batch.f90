@@ -35,7 +35,7 @@ module rbs_solve_ensemble_simd_batch
       integer :: task = 0, column = 0
       !> Step that they are for [s]
       real(wp) :: dt = 0.0_wp
-      !> The run alone, which knows the rules of its springs
+      !> The run alone, with the rules of its springs
       type(state_type) :: state
       class(stepper_type), allocatable :: stepper
       !> Lines of its springs
@@ -186,7 +186,7 @@ contains
       end do
    end subroutine create_batch
 
-   !> A run begins in a lane. Its first step is taken alone, as then the method finds what it needs.
+   !> A run begins in a lane. Its first step is taken alone, since the method finds its starting values there.
    subroutine load_run(batch, l, column, place, motion, first, task, error)
       type(batch_type), intent(inout) :: batch
       integer, intent(in) :: l
@@ -230,7 +230,7 @@ contains
       end associate
    end subroutine load_run
 
-   !> State and method of a run, and what of its column stays as it is.
+   !> State and method of a run, and the constants of its column.
    subroutine create_run(batch, l, column, task, error)
       type(batch_type), intent(inout) :: batch
       integer, intent(in) :: l

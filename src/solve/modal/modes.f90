@@ -78,7 +78,7 @@ module rbs_solve_modal_modes
       !> How much a relative error of a stiffness or of the axial load can grow in the square of a
       !> frequency: (f + 1)/(f - 1), where f times the axial load is the critical one; 1 without
       real(wp) :: condition = 1.0_wp
-      !> Blank, or what to beware of
+      !> Blank, or a warning
       character(len=200) :: warning = ''
    end type modes_type
 
@@ -151,8 +151,8 @@ contains
       end do
    end subroutine find_modes
 
-   !> A shape in the order of the structure, with its sign: the top goes to +x, or up if it goes along the
-   !> column only; the masses of a frame go to +x.
+   !> A shape in the order of the structure, with its sign: the top moves to +x, or up if it moves along the
+   !> column only; the masses of a frame move to +x.
    subroutine set_shape(structure, opens, found, shape)
       class(structure_type), intent(in) :: structure
       !> Whether it is one of openings
@@ -276,7 +276,7 @@ contains
       limit = min(step_of_mode(structure, plain(1), loaded(1)), step_of_mode(structure, plain(2), loaded(2)))
    end subroutine stability_limit
 
-   !> Longest stable step for one mode, on the safe side of what is not known.
+   !> Longest stable step for one mode, on the safe side.
    !>
    !> Whatever lines the springs are on, a motion lambda^2 x + lambda M^-1 C x + M^-1 K x = 0 obeys the scalar
    !> equation of the quotients c = x'Cx/x'Mx and k = x'Kx/x'Mx of its shape. So |lambda| is at most the
@@ -305,8 +305,8 @@ contains
       end if
       h = stable_step(omega, c)
       if (elastic) return
-      ! Where springs yield, their stiffness goes and their damping stays, unless it is that of the present
-      ! lines: the eigenvalue -c is left.
+      ! Where springs yield, their stiffness vanishes and their damping stays, unless it is that of the
+      ! present lines: the eigenvalue -c is left.
       remaining = merge(structure%mass_damping, c, structure%tangent_damping)
       if (remaining > 0.0_wp) h = min(h, real_limit/remaining)
    end function step_of_mode

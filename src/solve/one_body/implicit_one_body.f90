@@ -4,8 +4,8 @@
 !> on which springs leave their lines is found by Newton's method. Where a step is not found here, nothing has
 !> happened and it is taken there.
 !>
-!> As in `rbs_solve_time_implicit` every trial goes from the start of the step, each spring in one direction,
-!> and a correction that overshoots too far is cut.
+!> As in `rbs_solve_time_implicit` every trial starts from the start of the step, each spring in one
+!> direction, and a correction that overshoots too far is cut.
 module rbs_solve_one_body_implicit_one_body
    use rbs_base_constants, only: out_of_bounds
    use rbs_base_kinds, only: wp
@@ -59,8 +59,8 @@ module rbs_solve_one_body_implicit_one_body
       !> Motion of the body, its last correction, and the work of the residual on it at its start. The
       !> first is that on the lines of the start, which is given with its work
       real(wp) :: moved(2) = 0.0_wp, dx(2) = 0.0_wp, work = 0.0_wp
-      !> At the end: deformations, residual, velocities, accelerations, forces, and what the residual is
-      !> measured by
+      !> At the end: deformations, residual, velocities, accelerations, forces, and the forces that the
+      !> residual is measured by
       real(wp) :: q(2) = 0.0_wp, r(2) = 0.0_wp, v1(2) = 0.0_wp, a1(2) = 0.0_wp, g(2) = 0.0_wp, &
                   scale(2) = 0.0_wp
       !> Inverse of the tangent (11, 12, 21, 22), the stiffnesses that it is for, whether it is for the
@@ -72,7 +72,7 @@ module rbs_solve_one_body_implicit_one_body
       !> Motion by velocity and acceleration at the start; share of the forces and accelerations at the
       !> start in the balance
       real(wp), private :: before(2) = 0.0_wp, carried(2) = 0.0_wp
-      !> Whether a rule goes round in lines
+      !> Whether a rule cycles through lines
       logical, private :: stuck = .false.
    contains
       procedure :: set_step
@@ -259,7 +259,7 @@ contains
       self%fits = .true.
    end subroutine fit
 
-   !> The correction has gone too far: go back to where the residual does little work on it, by the method of
+   !> The correction was too long: return to where the residual does little work on it, by the method of
    !> false position (Illinois).
    subroutine cut_correction(self, slot, slope)
       type(one_body_step), intent(inout) :: self
@@ -282,12 +282,12 @@ contains
       end do
    end subroutine cut_correction
 
-   !> Look where the body is when it has moved so far: put the springs on their lines there, find what is left
+   !> Trial at a displacement of the body: the springs move along their lines. Residual
    !> of the balance, and its work on the correction.
    subroutine check_end(self, slot, slope)
       type(one_body_step), intent(inout) :: self
       type(spring_slot), intent(inout) :: slot(2)
-      !> `huge`: out of bounds, or the springs go round in lines
+      !> `huge`: out of bounds, or a rule cycles through lines
       real(wp), intent(out) :: slope
 
       slope = huge(1.0_wp)
@@ -304,7 +304,7 @@ contains
       slope = self%r(1)*self%dx(1) + self%r(2)*self%dx(2)
    end subroutine check_end
 
-   !> Whether a spring that goes to q is on its line there: one that has come to it by the end of another is
+   !> Whether a spring that moves to q is on its line there: one that has come to it by the end of another is
    !> beyond that end.
    pure logical function is_on_line(spring, q)
       type(body_spring), intent(in) :: spring
@@ -413,7 +413,7 @@ contains
       real(wp), intent(in) :: d
       !> See `next_branch`
       real(wp), intent(in) :: flexural_work
-      !> Number of lines left; whether the rule goes round in lines without length
+      !> Number of lines left; whether the rule cycles through lines without length
       integer, intent(out) :: events
       logical, intent(out) :: stuck
       integer :: direction

@@ -1,7 +1,7 @@
 !> The lines on which a structure leaves a corner of its static path.
 !>
 !> At a corner a spring is at an end of its line, or on a one-way line against its way. Which springs
-!> go on and which turn back must be found together: a linear complementarity problem.
+!> continue and which turn back must be found together: a linear complementarity problem.
 module rbs_solve_static_corner
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
@@ -18,7 +18,7 @@ module rbs_solve_static_corner
    !> How often all springs may be changed at once while their least number without room stays the same.
    integer, parameter :: patience = 3
 
-   !> Rate of a spring at rest, as a share of the largest, which says how far it may go back virtually; force
+   !> Rate of a spring at rest, as a share of the largest, by which it may move back virtually; force
    !> of a structure without strength, as a share of its peak.
    real(wp), parameter :: at_rest = 1.0e-6_wp
 
@@ -45,7 +45,7 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      !> Springs that cannot go the way they should on their lines, their number, and that with planes
+      !> Springs blocked on their lines in their direction of motion, their number, and that with planes
       integer :: blocked(path%moving), springs_blocked, stopped
       integer :: changes, fewest, left, i
       logical :: found, may_pass, marked
@@ -227,9 +227,9 @@ contains
 
    !> Follow the path of a structure that softens through a corner, and back where it snaps back.
    !>
-   !> Each spring on a one-way line may virtually go back by a small gap before it turns. Then the corner is
+   !> Each spring on a one-way line may virtually move back by a small gap before it turns. Then the corner is
    !> one of a continuous piecewise linear map, through which one path runs: the spring that has changed its
-   !> line last goes on the way it has come, which says whether the control goes forward or back; the first
+   !> line last continues in its direction, which decides whether the control moves forward or back; the first
    !> spring that is blocked on these rates changes its line and is the last one now. No lines come twice.
    !> Where no spring is blocked ahead, these rates lead out of the corner, however small the gaps are. Of
    !> several ways out, as symmetric structures have them, the gaps choose one.
@@ -328,7 +328,7 @@ contains
          goes = next_way
       end subroutine find_next
 
-      !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line goes back
+      !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line moves back
       !> as it came, and turns a gap later.
       subroutine change(i, heading, at)
          integer, intent(in) :: i, heading

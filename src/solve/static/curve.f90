@@ -26,9 +26,9 @@ module rbs_solve_static_curve
    !> The least motion of the top [m] over the way between two targets where the axial load varies.
    real(wp), parameter :: least_motion = 1.0e-4_wp
 
-   !> A spring that goes back less than this share of its deformation has not turned; one that is beyond its
-   !> end by less than the second share of its way is not beyond it, nor a layer by less than the third of the
-   !> largest deformation of a layer.
+   !> A spring that moves back by less than this share of its deformation has not turned; one that is beyond
+   !> its end by less than the second share of its way is not beyond it, nor a layer by less than the third of
+   !> the largest deformation of a layer.
    real(wp), parameter :: no_way = 1.0e-10_wp, no_overshoot = 1.0e-9_wp, layer_digits = 1.0e-13_wp
 
    type :: curve_type
@@ -67,7 +67,7 @@ contains
       self%far = far
       self%digits = layer_digits*max(maxval(abs(near%d(size(near%q) + 1:))), &
                                      maxval(abs(far%d(size(near%q) + 1:))))
-      ! Well above what `clean` takes for round-off, so that a motion found to have turned counts as turned.
+      ! Well above the round-off of `clean`, so that a motion found to have turned counts as turned.
       self%least(1) = 30.0_wp*noise*max(motion_of(structure, near), motion_of(structure, far))
       self%least(2) = self%least(1)/structure%total_height
    end subroutine set
@@ -116,7 +116,7 @@ contains
       end associate
    end function is_gentle
 
-   !> Work of a force on a way: the trapezoidal rule, and what the slopes at the ends correct of it [J]. The
+   !> Work of a force on a way: the trapezoidal rule, and its correction by the slopes at the ends [J]. The
    !> correction is exact if both are cubics of the parameter, or one a cubic of the other: the smallest is
    !> that of the straightest curve.
    pure function work(self, force, way, force_rate, way_rate)
@@ -157,14 +157,14 @@ contains
       end do
    end function least_rate
 
-   !> Whether a spring or layer is beyond an end of its line at the far end, or goes beyond it or turns back
+   !> Whether a spring or layer is beyond an end of its line at the far end, or passes it or turns back
    !> and comes again in between.
    pure logical function hides_event(self) result(hides)
       class(curve_type), intent(in) :: self
       integer :: i
 
       hides = .false.
-      ! Round-off of a column that stands.
+      ! Round-off of a column at rest.
       if (maxval(abs(self%far%q - self%near%q)) <= noise*least_motion) return
       do i = 1, size(self%turns)
          associate (one_way => self%lines%one_way(i))

@@ -3,11 +3,11 @@
 !>
 !> Between two events the path is followed in strides: predicted along the tangent, corrected by Newton's
 !> method, never accepted without convergence. An event is a point of the curve and is found as one: a spring
-!> or a layer stands on the end of its line while the parameter of the path is free; or the motion of one on a
+!> or a layer is on the end of its line while the parameter of the path is free; or the motion of one on a
 !> one-way line turns back, where its rate is zero.
 !>
-!> The parameter is what is driven where the axial load is constant, else the share of the way between two
-!> targets, in proportion to which both change.
+!> The parameter is the driven quantity where the axial load is constant, else the share of the path between
+!> two targets, in proportion to which both change.
 module rbs_solve_static_curved
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
@@ -29,7 +29,7 @@ module rbs_solve_static_curved
 
    public :: trace_curved
 
-   !> A stride below this share of what is driven, or of what was tried, does not count as one.
+   !> A stride below this share of the driven quantity, or of its trial, does not count.
    real(wp), parameter :: no_stride = 1.0e-11_wp
 
    !> A stride may be cut at least this often, however short it becomes; this often for its work.
@@ -43,7 +43,7 @@ module rbs_solve_static_curved
       !> Axial load at the top at each target (m) where it varies [N], and the number of the target
       real(wp), allocatable :: load(:)
       integer :: row = 0
-      !> In units of the parameter: length of the next stride, where the path goes to, largest value so far
+      !> In units of the parameter: length of the next stride, its goal, largest value so far
       real(wp) :: next_length = huge(1.0_wp), goal = 0.0_wp, extent = 0.0_wp
       !> Strides in a row that made no progress
       integer :: stalled_strides = 0
@@ -230,7 +230,7 @@ contains
          integer :: side
 
          associate (trial => self%trial, current => self%current, spring => self%line)
-            ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
+            ! An end that is met at the goal, but for round-off, is met there: beyond it, the path
             ! would turn back.
             if (abs(self%goal - trial%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
                trial%t = self%goal
@@ -251,7 +251,7 @@ contains
                closed = merge(self%springs%includes_upper_end(spring), &
                         self%springs%includes_lower_end(spring), side > 0)
                call self%springs%arrive(spring, side)
-               ! Where it made no progress its rate is zero and does not show that it goes on. From an open
+               ! Where it made no progress its rate is zero and does not show its direction. From an open
                ! end it has gone on already.
                if (closed .and. stands) call self%springs%leave(spring, side)
             end if

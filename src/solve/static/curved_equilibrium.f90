@@ -1,4 +1,4 @@
-!> Equilibrium of a column on a curved path, the springs on their present lines, and how it goes on.
+!> Equilibrium of a column on a curved path, the springs on their present lines, and its rates.
 !>
 !> The driven quantity, c, and the axial load at the top are linear in the parameter t of the path,
 !>
@@ -10,14 +10,14 @@
 !>     A = sum P_i l_i cos th_i + sum Q_i (-u_i sin th_{i-1} + w_i cos th_{i-1}) - F x_T
 !>     x_T = sum l_i sin th_i + u_i cos th_{i-1} + w_i sin th_{i-1}
 !>
-!> or, with the other kinematics, to second order without what the lateral force does on rotated bodies and
+!> or, with the other kinematics, to second order without the work of the lateral force on rotated bodies and
 !> the axial loads on openings of rotated joints; th_0 = 0. In absolute rotations joints meet only their
 !> neighbours: unknowns z are ordered joint by joint, slip, opening if there is one, absolute rotation. With
 !> the loads less the forces of the springs R(z, F, N) and their derivatives K = -dR/dz, a = dR/dF, p = dR/dN,
 !> rates and corrections follow from one band with a border,
 !>
 !>     [K    -(a + r p)] [dz]   [p N'         R             ]
-!>     [a'    0        ] [dF] = [c'    |      what c misses ]
+!>     [a'    0        ] [dF] = [c'    |      error of c ]
 !>
 !> Layered joints under an axial load that varies are on planes M = m + k phi - e N.
 module rbs_solve_static_curved_equilibrium
@@ -274,7 +274,7 @@ contains
       end do
    end subroutine to_joints
 
-   !> Rates at a point, and what takes its residual away; under a driven force it must be stable.
+   !> Rates at a point, and the correction of its residual; under a driven force it must be stable.
    subroutine solve(self, springs, point, found)
       class(curved_equilibrium), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -291,7 +291,7 @@ contains
       residual = residual - point%displacement
       call self%tangent%factor()
       self%right(:, 1) = self%pushed*self%load(2)
-      ! The last digits of forces near zero would look as if the system had no solution.
+      ! The last digits of forces near zero would suggest that the system has no solution.
       self%right(:, 2) = merge(self%residual, 0.0_wp, abs(self%residual) > sqrt(tiny(1.0_wp)))
       if (self%by_force) then
          found = self%tangent%positive

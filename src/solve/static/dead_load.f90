@@ -92,7 +92,7 @@ contains
                        'or less load')
    end subroutine check_stability
 
-   !> Refuse members that buckle between their ends, whatever holds these.
+   !> Refuse members that buckle between their ends, even if these are held.
    subroutine check_members(frame, error)
       type(frame_type), intent(in) :: frame
       type(error_type), allocatable, intent(inout) :: error

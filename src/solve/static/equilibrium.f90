@@ -1,7 +1,7 @@
-!> Equilibrium of a structure on the present lines of its springs, and how it goes on.
+!> Equilibrium of a structure on the present lines of its springs, and its rates.
 !>
-!> While every spring stays on its line, all is linear in what is driven: the number F that the pattern p of
-!> the load is multiplied with, or the displacement of the top, a row c of the unknowns. This is found
+!> While every spring stays on its line, all is linear in the driven quantity: the number F that the pattern p
+!> of the load is multiplied with, or the displacement of the top, a row c of the unknowns. This is found
 !> exactly, without increments:
 !>
 !>     K x' = p F',   c x' = u'        K = B' diag(k) B + K_G
@@ -56,13 +56,13 @@ module rbs_solve_static_equilibrium
       logical :: of_dead_load = .false.
       !> Number of springs that can move; they are the first ones
       integer :: moving = 0
-      !> An element that snaps back on the present lines; 0: none. Whether the path may go on with it
+      !> An element that snaps back on the present lines; 0: none. Whether the path may continue with it
       integer :: unstable = 0
       logical :: may_snap_back = .false.
       !> Whether the stiffnesses are too far apart for the arithmetic
       logical :: lost_digits = .false.
-      !> Rates of force and displacement; work of the load per force and per unit of what is driven, less that
-      !> of the displacement
+      !> Rates of force and displacement; work of the load per force and per unit of the driven quantity, less
+      !> that of the displacement
       real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, dead_load_work_rate = 0.0_wp
       !> Change that takes the structure to equilibrium: of the position (coordinates), and of the force [N]
       real(wp), allocatable :: correction(:)
@@ -74,7 +74,7 @@ module rbs_solve_static_equilibrium
       !> follow from the unknowns alone, so that lost digits can be recovered
       logical, private :: coupled = .false., refines = .false.
       !> Whether the springs are few; then their geometric stiffness, the equations without stiffness, and
-      !> what they are scaled with: one over the root of the initial stiffness, and the largest arm
+      !> their scales: one over the root of the initial stiffness, and the largest arm
       logical, private :: are_few = .false.
       real(wp), private :: geometric(few, few) = 0.0_wp, equation(row_length, few + 1) = 0.0_wp
       real(wp), private :: scale(few) = 0.0_wp, most = 1.0_wp
@@ -90,8 +90,8 @@ module rbs_solve_static_equilibrium
       real(wp), allocatable, private :: reach(:)
       !> Load per unit, residual, and an array for the loads that are solved for (unknowns)
       real(wp), allocatable, private :: pattern(:), residual(:), load(:)
-      !> Changes of the unknowns and what was added for lost digits (unknowns, 2); changes of the position
-      !> with what is driven and by correction (coordinates, 2)
+      !> Changes of the unknowns and their refinement (unknowns, 2); changes of the position
+      !> with the driven quantity and by correction (coordinates, 2)
       real(wp), allocatable, private :: change(:, :), moved(:, :)
       !> Forces of the springs, flexibilities (springs); changes of the position that bring the inside of
       !> elements to equilibrium, and those by the load per unit (coordinates, or none)
@@ -342,7 +342,7 @@ contains
          ! A part that gives way beside the top moves without end while the top does not.
          call solve(1, 1.0_wp, found)
          if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
-         ! Where hinges make a mechanism of a member between nodes that stand, its own load moves it.
+         ! Where hinges make a mechanism of a member between nodes at rest, its own load moves it.
          if (self%of_dead_load .and. shares) found = found .and. maxval(abs(self%inner_load)) < falls
          if (.not. found) return
          rate = self%moved(:, 1)
@@ -354,7 +354,7 @@ contains
          if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
          self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
          call solve(2, residual, settled)
-         ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.
+         ! In a mechanism the correction of round-off is round-off itself; more than that is found by the row.
          if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height) then
             self%moved(:, 2) = 0.0_wp
             y(2) = 0.0_wp
@@ -366,7 +366,7 @@ contains
 
    contains
 
-      !> Changes per unit of what is driven (1), or by what is missing (2), and the force that goes with them.
+      !> Changes per unit of the driven quantity (1), or by the residual (2), and the force of these changes.
       subroutine solve(j, displacement, regular)
          integer, intent(in) :: j
          !> Where it is driven [m]
@@ -406,7 +406,7 @@ contains
             ! One more would add about the square of this share.
             if (maxval(abs(self%change(:, 2))) <= few_digits*maxval(abs(self%change(:, 1)))) return
          end do
-         ! Of a frame round-off is left to correct, or what parts share that are free to move.
+         ! In a frame round-off is left to correct, or the common motion of parts that are free to move.
          self%lost_digits = regular .and. self%refines .and. j == 1
          regular = .not. self%refines
       end subroutine solve
@@ -450,7 +450,7 @@ contains
          if (structure%axially_loaded) call structure%add_geometric(self%axial, matrix%band)
          call hold_still(self)
          call matrix%factor()
-         ! The last pivots of a long chain are small by themselves; what is left of them counts.
+         ! The last pivots of a long chain are small by themselves; their ratio to the sums before counts.
          matrix%positive = matrix%negative == 0 .and. &
                            maxval(matrix%triangle(1, :)*self%pivot) < 1.0_wp/no_stiffness
          if (by_force) then
@@ -461,7 +461,7 @@ contains
       end associate
    end subroutine factor
 
-   !> Work of the load per unit of it and of what is driven.
+   !> Work of the load per unit of it and of the driven quantity.
    real(wp) function work_rate(self, rate) result(work)
       class(equilibrium_type), intent(in) :: self
       !> Of the deformations (springs)
@@ -533,15 +533,15 @@ contains
 
    !> Joints one above the other that nothing couples, small rotations without axial load, driven by the
    !> displacement. They share the force, and their motions add up. The force is that of the most flexible
-   !> joint p and what takes the others to it, F' = -r_p/a_p + F'': with F' itself, its motion
+   !> joint p and the corrections of the others, F' = -r_p/a_p + F'': with F' itself, its motion
    !> (r_p + a_p F')/k_p would be a difference of round-off over next to nothing.
    pure subroutine follow_diagonal(m, arm, initial, k, r, residual, rate, force_rate, correction, &
                                    force_correction, flexible, regular)
       integer, intent(in) :: m
       !> Arms of the force and initial stiffness of the joints (m); stiffness of the springs, residual (m),
-      !> and what is missing from the displacement [m]
+      !> and the residual of the displacement [m]
       real(wp), intent(in) :: arm(m), initial(m), k(m), r(m), residual
-      !> Change of the deformations per metre, and what takes the residuals away (m); change of the force
+      !> Change of the deformations per metre, and correction of the residuals (m); change of the force
       !> [N/m], and of the force with the correction [N]
       real(wp), intent(out) :: rate(m), correction(m), force_rate, force_correction
       !> Flexibilities, 0 where there is no stiffness (m)

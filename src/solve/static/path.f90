@@ -1,9 +1,9 @@
-!> Common part of the static paths, whatever the structure: the springs, the driven quantity, the way from
+!> Common part of the static paths of all structures: the springs, the driven quantity, the way from
 !> target to target, and the rows.
 !>
 !> Whether a point of a static path is a state of the structure: the top is where its springs are, each joint
-!> is in equilibrium, and no work is missing. A path is found without tolerances, so that what a point may
-!> miss is round-off; more means that the arithmetic could not carry the path on.
+!> is in equilibrium, and no work is missing. A path is found without tolerances, so that the error of a point
+!> is round-off; more means that the arithmetic has failed.
 module rbs_solve_static_path
    use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
@@ -28,7 +28,7 @@ module rbs_solve_static_path
    !> unloading.
    real(wp), parameter :: on_the_end = 1.0e-11_wp
 
-   !> Tolerances of a point: of the displacement, in shares of what all springs contribute; of equilibrium, in
+   !> Tolerances of a point: of the displacement, in shares of the sum over all springs; of equilibrium, in
    !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
    !> follows a curve, and work is an integral over it, place and work have limits of their own.
    real(wp), parameter :: of_place = 1.0e-12_wp, of_force = 1.0e-9_wp, of_work = 1.0e-9_wp
@@ -61,7 +61,7 @@ module rbs_solve_static_path
    !> A force is reached if less than this share of it is missing.
    real(wp), parameter :: no_force = 1.0e-12_wp
 
-   !> The state of a path and how it goes on.
+   !> The state of a path and its rates.
    type, abstract :: static_path
       !> The structure, and the one whose potential belongs to the balance of energy: where axial loads vary,
       !> under the constant ones alone
@@ -69,25 +69,25 @@ module rbs_solve_static_path
       type(spring_array) :: springs
       !> Number of springs that can move, the first ones
       integer :: moving = 0
-      !> Whether the force is driven, else the displacement; whether what is driven is the share of the dead
-      !> load of a frame
+      !> Whether the force is driven, else the displacement; whether the driven quantity is the share of the
+      !> dead load of a frame
       logical :: by_force = .false., of_dead_load = .false.
-      !> Displacement of the top [m], lateral force [N], work of the force [J]; what is driven, and the way it
-      !> goes on the line found last: +1, -1, 0 for no line
+      !> Displacement of the top [m], lateral force [N], work of the force [J]; the driven quantity, and its
+      !> direction on the line found last: +1, -1, 0 for no line
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp, control = 0.0_wp
       integer :: direction = 0
-      !> Change of the position per unit of what is driven, in its direction (coordinates)
+      !> Change of the position per unit of the driven quantity, in its direction (coordinates)
       real(wp), allocatable :: rate(:)
       !> The same of the axial load at the top where it varies [N]
       real(wp) :: axial_rate = 0.0_wp
-      !> Whether the path consists of straight lines, and is looked at where they end
+      !> Whether the path consists of straight lines, whose ends are monitored
       logical :: is_straight = .false.
       !> Whether rates were not found as the stiffnesses are too far apart for the arithmetic
       logical :: lost_digits = .false.
-      !> Whether the path follows snap-backs, goes back at present, and seeks its way through a corner, where
+      !> Whether the path follows snap-backs, moves back at present, and is in search through a corner, where
       !> the inside of elements may snap back
       logical :: may_go_back = .false., goes_back = .false., passes = .false.
-      !> Ways by which springs have come to the ends of their lines, 0 for others; whether those lines went
+      !> Motions of springs to the ends of their lines, 0 for others; whether those lines were
       !> one way, and their stiffness; rates before the corner (springs)
       integer, allocatable :: arrived(:)
       logical, allocatable :: one_way(:)
@@ -102,7 +102,7 @@ module rbs_solve_static_path
       !> the steps that were cut
       real(wp) :: at_begin = 0.0_wp, load_work = 0.0_wp
       integer :: cuts = 0
-      !> Axial load at the top without what follows the force [N], and energy that was damped before [J]
+      !> Axial load at the top without the part that follows the force [N], and energy damped before [J]
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
       !> Driven quantity where the way to the present target begins, and the number of the target, from 0
       real(wp) :: way_begin = 0.0_wp
@@ -215,7 +215,7 @@ contains
       self%direction = 0
    end subroutine reset_reference
 
-   !> Save or restore what every path remembers; solvers add what is their own.
+   !> Save or restore the memory common to all paths; solvers add their own.
    subroutine serialize_path(self, stream)
       class(static_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -266,7 +266,7 @@ contains
       self%task => task
       energy = self%energies()
       call begin_check(self%check, self%structure, self%springs, energy%residual)
-      ! A path that goes on has forces and works from before, and the round-off of theirs.
+      ! A continued path has forces and works from before, with their round-off.
       call self%look(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
       self%violates_balance = .false.
@@ -285,7 +285,7 @@ contains
          if (crushed_joint > 0) then
             task%summary%lost_joint = self%structure%place(crushed_joint)%index
             call fall_of(self%springs, crushed_joint, task%summary%fall)
-            ! That is what ends the path.
+            ! This ends the path.
             if (allocated(failure)) deallocate (failure)
          else if (.not. allocated(failure)) then
             call snap_to_ends(self)
@@ -333,7 +333,7 @@ contains
       end do
    end subroutine follow
 
-   !> A path ends where a member loses its axial load: what follows is a fall.
+   !> A path ends where a member loses its axial load, since a fall follows.
    subroutine check_members(self, failure)
       class(static_path), intent(in) :: self
       type(error_type), allocatable, intent(inout) :: failure
@@ -450,7 +450,7 @@ contains
       if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
    end subroutine see_corner
 
-   !> The path goes straight from the present point to another one. Where it passes zero displacement, the
+   !> Straight line from the present point to another one. Where it passes zero displacement, the
    !> force in the direction of loading begins or ends, and may be the largest.
    subroutine see_crossing(self, displacement, force)
       class(static_path), intent(inout) :: self
@@ -494,7 +494,7 @@ contains
       call self%task%recorder%keep(self%structure, response, self%springs, self%springs%d, error)
    end subroutine keep_row
 
-   !> Whether a spring has come to the open end that it goes to.
+   !> Whether a spring has reached the open end that it moves to.
    pure logical function is_on_end(springs, i, d, rate)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
@@ -530,7 +530,7 @@ contains
       self%control = there
    end subroutine snap_to_ends
 
-   !> The energies at the present point; the residual is what the balance misses.
+   !> The energies at the present point, and the residual of their balance.
    type(energy_type) function energies(self) result(energy)
       class(static_path), intent(in) :: self
 

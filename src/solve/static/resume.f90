@@ -49,7 +49,7 @@ contains
    contains
 
       !> Begin in the state that another analysis ended in. A static path of the same kind under the same
-      !> axial load goes on as if it had not been cut. Otherwise the top is held where it is, velocities
+      !> axial load continues as if it had not been cut. Otherwise the top is held in place, velocities
       !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
          type(checkpoint_type) :: checkpoint
@@ -109,7 +109,7 @@ contains
    end function kind_of
 
    !> The joints come to equilibrium at the displacement of the top, by Newton's method with a line search.
-   !> Every trial goes from where the springs are, each in one direction, so that earlier trials leave no
+   !> Every trial starts from the present springs, each in one direction, so that earlier trials leave no
    !> trace.
    subroutine settle(path, error)
       class(static_path), intent(inout) :: path
@@ -121,7 +121,7 @@ contains
       logical :: found, there
 
       q = path%springs%d
-      ! Where nothing but round-off has been displaced, the lengths of the lines say what is small.
+      ! Where nothing but round-off has been displaced, the lengths of the lines are the scale.
       way = 0.0_wp
       associate (lower => path%springs%first, upper => path%springs%last)
          where (lower > -unbounded .and. upper < unbounded) way(:size(lower)) = upper - lower

@@ -48,7 +48,7 @@ contains
             call check_axial_load()
             if (allocated(error)) return
             load = axial_load
-            ! From the state of another analysis the load goes to its first value.
+            ! From the state of another analysis the load changes to its first value.
             varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
             allocate (other, source=structure)
             call other%put_under(load(1))
@@ -82,7 +82,7 @@ contains
                             'or drive it by displacement'
          end if
       end if
-      ! Without inertia the ground holds what drives the structure.
+      ! Without inertia the ground balances the driving force.
       task%summary%peak_base_shear = task%summary%peak_force
       task%summary%method = 'static'
 

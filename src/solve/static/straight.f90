@@ -1,4 +1,4 @@
-!> Static path for small rotations, event to event: the structure goes along its line to the target or to the
+!> Static path for small rotations, event to event: the structure moves along its line to the target or to the
 !> next end of a spring's line, whichever comes first. Exact for `small` and `pdelta`; no tolerance, no
 !> increments.
 module rbs_solve_static_straight
@@ -32,7 +32,7 @@ module rbs_solve_static_straight
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
       type(equilibrium_type), pointer :: equilibrium => null()
-      !> The line: what is driven, position (coordinates), force and displacement where it begins
+      !> The line: driven quantity, position (coordinates), force and displacement where it begins
       real(wp) :: start = 0.0_wp
       real(wp), allocatable :: q(:)
       !> Springs near the ends of their lines, a work array (moving)
@@ -41,7 +41,7 @@ module rbs_solve_static_straight
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
       integer :: ends = 0
-      !> Way that the control went last, the farthest it has been, and the largest share of the way to the
+      !> Last motion of the control, its largest value, and the largest share of the path to the
       !> present target
       integer :: last_way = 0
       real(wp) :: farthest = 0.0_wp, share = 0.0_wp
@@ -157,7 +157,7 @@ contains
 
    end subroutine advance
 
-   !> The control goes back from here on; the first time of a loop counts for its energy.
+   !> The control moves back from here on; the first time of a loop counts for its energy.
    subroutine begin_loop(self)
       class(straight_path), intent(inout) :: self
 
@@ -221,7 +221,7 @@ contains
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
 
-   !> Round-off of the equilibrium is corrected in full, off the rear end of a line too, or what is left out
+   !> Round-off of the equilibrium is corrected in full, off the rear end of a line too, or the rest
    !> would be missing at the next corner. More than round-off moves no spring off its line.
    pure subroutine keep_within(n, d, correction, rate, first, last, q)
       integer, intent(in) :: n
@@ -279,9 +279,9 @@ contains
 
    contains
 
-      !> The displacement at which the loop began is reached again. A test, whose displacement does not go
-      !> back, would release the work that the loads of all storeys do while their force goes from the one to
-      !> the other, less that of the loop. Where energy is missing a test does not go there.
+      !> The displacement at which the loop began is reached again. A test, whose displacement does not move
+      !> back, would release the work that the loads of all storeys do while their force changes from the one
+      !> to the other, less that of the loop. Where energy is missing no test follows.
       subroutine end_loop()
          real(wp) :: at, way, energy
 
@@ -317,7 +317,7 @@ contains
       integer :: i
 
       i = self%ends
-      ! If `go` has put it there already, the line has ended.
+      ! If `go` has already moved it there, the line has ended.
       if (self%direction /= 0 .and. i > 0) call arrive(self, i)
       self%direction = 0
    end subroutine end_line

@@ -37,7 +37,7 @@ module rbs_solve_time_finite_joint
       real(wp) :: tb_rate(2) = [0.0_wp, -0.5_wp], eb_rate(2) = [0.5_wp, 0.0_wp]
    end type turned_body
 
-   !> A joint over a step. That of a held top is looked at from above: its lower body is the top, and its
+   !> A joint over a step. That of a held top is turned over: its lower body is the top, and its
    !> deformations and forces have the other sign.
    type :: joint_type
       !> Numbers of its bodies, 0 for the ground, and its sign
@@ -139,7 +139,7 @@ contains
                           sum(below%e1*rate) + sum(below%t1*joint%finish)*rate_below(3)]
    end function joint_rates
 
-   !> Add what a joint gives to the bodies: its forces in their coordinates.
+   !> Add the forces of a joint on its bodies, in their coordinates.
    pure subroutine add_joint_forces(below, above, joint, force, on_below, on_above)
       type(turned_body), intent(in) :: below, above
       type(joint_type), intent(in) :: joint

@@ -2,7 +2,7 @@
 !> where the mass is diagonal and the tangent a band: O(n) a step, no limit of stability.
 !>
 !> The springs are straight lines, so the tangent step is exact up to the next end of a line. Where Newton's
-!> method goes back and forth between two branches, the solution goes from end to end instead. A step that
+!> method oscillates between two branches, the solution moves from end to end instead. A step that
 !> does not converge is taken back to the stored state and cut in two.
 module rbs_solve_time_implicit
    use rbs_base_arrays, only: swap
@@ -61,7 +61,7 @@ module rbs_solve_time_implicit
 
    interface
       !> Judge the step by the energy that it loses. If it is not found, or if it loses more than a member
-      !> that yields, look for the state that members snap to.
+      !> that yields, search the state that members snap to.
       module subroutine snap_unless_smooth(self, state)
          implicit none
          class(implicit_stepper), intent(inout) :: self
@@ -444,7 +444,7 @@ contains
       lifts(:horizontal) = 0.0_wp
    end function lifts
 
-   !> Save or restore what the bodies do at the start of a step.
+   !> Save or restore the motion of the bodies at the start of a step.
    subroutine serialize(self, stream)
       class(implicit_stepper), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

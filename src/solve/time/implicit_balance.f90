@@ -34,7 +34,7 @@ module rbs_solve_time_implicit_balance
       !> Velocities, accelerations and forces of the unknowns at the start of a step, and at its end
       !> (unknowns)
       real(wp), allocatable :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)
-      !> Residual, and what the unknowns have moved in the step (unknowns)
+      !> Residual, and displacements of the unknowns in the step (unknowns)
       real(wp), allocatable :: r(:), moved(:)
       !> Loads at the end of the step
       real(wp) :: load(signals) = 0.0_wp
@@ -176,7 +176,7 @@ contains
       self%damping_version = state%springs%version
    end subroutine set_damping
 
-   !> Save or restore what the bodies do at the start of a step.
+   !> Save or restore the motion of the bodies at the start of a step.
    subroutine serialize(self, stream)
       class(step_balance), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -187,7 +187,7 @@ contains
       call stream%item(self%largest)
    end subroutine serialize
 
-   !> Tangents of the elements on the present lines: what lies between the unknowns is condensed by them.
+   !> Tangents of the elements on the present lines, which condense the parts between the unknowns.
    subroutine fit_elements(self, state)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -205,7 +205,7 @@ contains
       self%resistance_in = self%resistance
    end subroutine fit_elements
 
-   !> Residual of the step for what the unknowns have moved, and its size relative to the forces.
+   !> Residual of the step for displacements of the unknowns, and its size relative to the forces.
    subroutine find_residual(self, state, h, load, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -227,7 +227,7 @@ contains
    end subroutine find_residual
 
    !> The residual of the trial that nothing has moved. It has the forces of the end of the last step, but for
-   !> what follows the loads and the velocities by themselves.
+   !> the response to loads and velocities alone.
    subroutine find_first(self, state, h, load, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -284,12 +284,12 @@ contains
          call structure%add_ground(load, g)
          if (structure%damped .and. structure%tangent_numbers > 0) call structure%damp(v, damping_tangent, g)
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
-         ! Supports take what acts on them.
+         ! Supports balance the forces on them.
          if (structure%has_held) where (structure%is_held) g = 0.0_wp
       end associate
    end subroutine find_forces
 
-   !> Accelerations and velocities at the end of the step for what the unknowns have moved.
+   !> Accelerations and velocities at the end of the step for displacements of the unknowns.
    pure subroutine end_of_step(self, h)
       class(step_balance), intent(inout) :: self
       real(wp), intent(in) :: h
@@ -305,7 +305,7 @@ contains
       real(wp), intent(in) :: alpha_m, alpha_f, mass(m), a0(m), a1(m), g0(m), g1(m)
       real(wp), intent(out) :: r(m)
 
-      ! Unknowns without mass are in equilibrium at the end of the step, whatever it was at the start.
+      ! Unknowns without mass are in equilibrium at the end of the step, even if not at the start.
       r = (1.0_wp - alpha_f)*g1 + alpha_f*merge(g0, 0.0_wp, mass > 0.0_wp) &
           - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
@@ -389,8 +389,8 @@ contains
       end do
    end function largest_product
 
-   !> Whether the residual is what round-off leaves of the terms of the step. Modes that the step does not
-   !> resolve have accelerations far beyond what comes of them: after a shock h^2 a0 is many turns.
+   !> Whether the residual is the round-off of the terms of the step. Modes that the step does not
+   !> resolve have accelerations far beyond the motion of the step: after a shock h^2 a0 is many turns.
    logical function is_round_off(self, state, h, stiffness)
       class(step_balance), intent(in) :: self
       type(state_type), intent(in) :: state

@@ -228,7 +228,7 @@ contains
 
    contains
 
-      !> Changes of the deformations that follow from what the bodies have moved.
+      !> Changes of the deformations by the displacements of the bodies.
       subroutine find_changes()
          real(wp) :: change(3)
          integer :: i
@@ -462,7 +462,7 @@ contains
       if (self%regular) self%regular = maxval(abs(self%dx(3, :))) < most_turn
    end subroutine correct
 
-   !> Add what a joint gives to the tangent.
+   !> Add the share of a joint in the tangent.
    subroutine add_joint_tangent(self, i, share, per_force)
       type(finite_stepper), intent(inout) :: self
       integer, intent(in) :: i
@@ -540,7 +540,7 @@ contains
       self%g0 = self%g1
    end subroutine finish_step
 
-   !> Save or restore what the bodies do at the start of a step.
+   !> Save or restore the motion of the bodies at the start of a step.
    subroutine serialize(self, stream)
       class(finite_stepper), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

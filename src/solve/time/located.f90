@@ -18,7 +18,7 @@ module rbs_solve_time_located
 
    public :: located_stepper
 
-   !> Error that stands for an attempt that is not finite.
+   !> Error assigned to an attempt that is not finite.
    real(wp), parameter :: not_finite = 1.0e10_wp
 
    type, extends(stepper_type) :: located_stepper
@@ -242,7 +242,7 @@ contains
       most_idle = 20 + 10*state%springs%count
    end function most_idle
 
-   !> Springs that are at an end of their line and go on, or have turned back already, change their line
+   !> Springs that pass an end of their line, or have turned back already, change their line
    !> before the step.
    subroutine leave_at_once(self, state, part, error)
       class(located_stepper), intent(inout) :: self

@@ -252,7 +252,7 @@ contains
    end subroutine report_snaps
 
    !> Times that are multiples of one step differ by it up to round-off; the steps are then equal to the last
-   !> bit, and what a method has found for a step holds for all of them.
+   !> bit, and the constants of a method for a step hold for all of them.
    pure real(wp) function step_of(plan, h)
       type(time_plan), intent(in) :: plan
       real(wp), intent(in) :: h

@@ -48,7 +48,7 @@ module rbs_solve_time_monitor
       logical, private :: opens = .false.
       !> Absolute rotations of the bodies at both ends of a step, and their rates (n, 4)
       real(wp), allocatable, private :: rotation(:, :)
-      !> Whether the acceleration of the top is looked at, and the equation of motion for it
+      !> Whether the acceleration of the top is monitored, and the equation of motion for it
       logical :: feels = .false.
       type(motion_result), private :: now
    contains
@@ -83,7 +83,7 @@ contains
       real(wp), intent(in) :: load(4), clock
       !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
       real(wp), intent(in) :: collapse_drift
-      !> Whether the acceleration of the top is looked at
+      !> Whether the acceleration of the top is monitored
       logical, intent(in) :: floor
       integer :: i, m
 
@@ -248,7 +248,7 @@ contains
             call self%update_peak(largest_of(top), 0.0_wp)
             self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
          end if
-         ! The force of the lowest springs is a cubic; what damping adds is taken as straight.
+         ! The force of the lowest springs is a cubic; that of damping is taken as linear.
          i = structure%base_spring
          spring = springs%k(i)*[q1(i) - q0(i), h*v0(i), h*v1(i)]
          base(:2) = [motion%base_shear(springs, q0, v0), motion%base_shear(springs, q1, v1)]
@@ -311,7 +311,7 @@ contains
 
    end subroutine check_within
 
-   !> Remember the shares of the openings in what is watched.
+   !> Keep the shares of the openings in the limit states.
    pure subroutine see_openings(self, springs, q)
       type(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -324,7 +324,7 @@ contains
       end do
    end subroutine see_openings
 
-   !> Share of the opening, and of the rotation at rest, in what is watched.
+   !> Share of the opening, and of the rotation at rest, in a limit state.
    pure real(wp) function opening_share(watch, springs, rotation) result(share)
       type(watch_type), intent(in) :: watch
       type(spring_array), intent(in) :: springs
@@ -340,7 +340,7 @@ contains
    pure logical function are_beyond(m, lowest, highest, q0, v0, q1, v1, reach)
       integer, intent(in) :: m
       real(wp), intent(in) :: lowest(m), highest(m), q0(m), v0(m), q1(m), v1(m)
-      !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
+      !> Excess of a cubic over its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
       integer :: i, beyond
 
@@ -376,7 +376,7 @@ contains
       self%top(self%watch(i)%state) = top
    end subroutine reach
 
-   !> The bounds of what is still watched for.
+   !> Bounds of the limit states that are not reached yet.
    pure subroutine set_bounds(self)
       type(response_monitor), intent(inout) :: self
       integer :: i

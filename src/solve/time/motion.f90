@@ -75,7 +75,7 @@ contains
       self%damping = damping_of_body(self%one_body, self%joint_damping, self%modal)
    end subroutine create
 
-   !> Accelerations of the springs at a state, and what they follow from.
+   !> Accelerations of the springs at a state, and the forces that cause them.
    subroutine acceleration(self, springs, q, v, load, result)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -147,7 +147,7 @@ contains
       if (self%damped .or. springs%axial_load_varies) call add_to_springs(self, springs, v, load, f)
    end subroutine joint_forces
 
-   !> Add what layered joints bear by axial loads that have changed, and the forces of the damping.
+   !> Add the forces of layered joints by axial loads that have changed, and those of the damping.
    subroutine add_to_springs(self, springs, v, load, f)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -233,7 +233,7 @@ contains
    end function damping_power
 
    !> Base shear, the force of the ground on the structure along x: forces of the lowest springs and of the
-   !> damping, that between the bodies and the ground included [N]; asked for in every step.
+   !> damping, that between the bodies and the ground included [N]; called in every step.
    real(wp) function base_shear(self, springs, q, v) result(force)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs

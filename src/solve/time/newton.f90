@@ -1,4 +1,4 @@
-!> Implicit steps by Newton's method with a line search. Every trial goes from the state at the start of the
+!> Implicit steps by Newton's method with a line search. Every trial starts from the state at the start of the
 !> step, each spring in one direction, so that earlier trials leave no trace; and the forces of springs that
 !> do not soften then have a convex potential, on which this converges. A step that does not converge is taken
 !> in two halves.
@@ -88,7 +88,7 @@ module rbs_solve_time_newton
          class(newton_stepper), intent(in) :: self
       end function work_interface
 
-      !> Whether the residual is what round-off leaves of the terms of the step.
+      !> Whether the residual is the round-off of the terms of the step.
       logical function round_off_interface(self, state)
          import :: newton_stepper, state_type
          implicit none
@@ -96,7 +96,7 @@ module rbs_solve_time_newton
          type(state_type), intent(in) :: state
       end function round_off_interface
 
-      !> Save or restore what the bodies do at the start of a step.
+      !> Save or restore the motion of the bodies at the start of a step.
       subroutine serialize_interface(self, stream)
          import :: newton_stepper, stream_type
          implicit none
@@ -218,7 +218,7 @@ contains
          least = min(least, self%residual)
          if (idle > most_idle) return
          slope = self%work_of_residual()
-         ! An overshoot mostly does no harm. Where Newton's method goes back and forth, it is bounded.
+         ! An overshoot mostly does no harm. Where Newton's method oscillates, it is bounded.
          too_far = merge(0.9_wp, 0.05_wp, iteration <= most_free)
          if (slope < -too_far*slope_before .and. (self%searches_uphill .or. slope_before > 0.0_wp)) then
             call search_line(self, state, slope_before, slope, too_far/3.0_wp)

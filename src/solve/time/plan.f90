@@ -89,7 +89,7 @@ contains
    !> steps of dt run from the start to the end and a row is kept after each.
    subroutine new_plan(plan, time, dt, longest, limit, error)
       type(time_plan), intent(inout) :: plan
-      !> Times of the loading, checked (m) [s]; step that the user wants, or `unset` [s]
+      !> Times of the loading, checked (m) [s]; step given by the user, or `unset` [s]
       real(wp), intent(in) :: time(:), dt
       !> Longest step where the user gives none [s]; steps that the user gives must not be longer; `huge` for
       !> none [s]
@@ -145,7 +145,7 @@ contains
       end if
    end subroutine check_length
 
-   !> The steps go on from those of another analysis, if they are the same but for round-off.
+   !> The steps continue those of another analysis, if they are the same but for round-off.
    pure subroutine go_on_from(self, dt, origin, offset)
       class(time_plan), intent(inout) :: self
       !> Step of the other one, where it counted from, and how many it has taken

@@ -18,7 +18,7 @@ module rbs_solve_time_scheme
       real(wp), allocatable :: q(:), v(:), error_q(:), error_v(:)
       !> Works of loads and damping in it [J]; loads at its end
       real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, load(4) = 0.0_wp
-      !> The equation of motion at the stage that was looked at last
+      !> The equation of motion at the last stage
       type(motion_result) :: now
       !> Whether the acceleration at the start is known from the last attempt
       logical :: begun = .false.
@@ -29,7 +29,7 @@ module rbs_solve_time_scheme
    end type scheme_type
 
    abstract interface
-      !> Allocate what the steps of a structure need.
+      !> Allocate the work arrays for the steps of a structure.
       subroutine create_interface(self, structure)
          import :: scheme_type, structure_type
          implicit none

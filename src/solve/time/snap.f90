@@ -1,7 +1,7 @@
 !> Members that snap. Where a member softens faster than the rest of it can unload, no state near the last one
-!> is in equilibrium, although the motion of its ends goes on: in a test it would jump, with a bang. What lies
-!> inside has no mass that could govern the jump, so it goes as in a very viscous liquid, down to the next
-!> state at which it rests. The energy that the liquid takes is lost; it is an item of the balance.
+!> is in equilibrium, although the motion of its ends continues: in a test it would jump, with a bang. The
+!> part inside has no mass that could govern the jump, so it moves as in a very viscous liquid, down to the
+!> next state at which it rests. The energy that the liquid takes is lost; it is an item of the balance.
 submodule (rbs_solve_time_implicit) rbs_solve_time_snap
    implicit none
 
@@ -26,7 +26,7 @@ contains
          call find_loss(self, state, loss, energy)
          if (abs(loss) <= far*energy) return
       end if
-      ! Parts without mass go to the next state of rest, not to any.
+      ! Parts without mass move to the next state of rest, not to any.
       call state%springs%restore()
       self%runaway = 0
       call snap(self, state)
@@ -95,7 +95,7 @@ contains
       self%most_trials = trials
    end subroutine snap
 
-   !> A state in which the tangent is not definite is an equilibrium too. Its tangent for what follows is
+   !> A state in which the tangent is not definite is an equilibrium too. Its tangent for the next steps is
    !> that with resistance.
    subroutine rest(self, state, resistance)
       class(implicit_stepper), intent(inout) :: self

@@ -27,7 +27,7 @@ module rbs_solve_time_start
 
 contains
 
-   !> The state that another analysis ended in. At a time that is that of its end the clock goes on.
+   !> The state that another analysis ended in. At the time of its end the clock continues.
    subroutine resume_state(state, structure, loads, before, plan, checkpoint, error)
       type(state_type), intent(out) :: state
       class(structure_type), intent(in) :: structure
@@ -52,7 +52,7 @@ contains
             call prepare_loads(state, structure)
          end if
       end if
-      ! A load that goes on differs by the round-off of a clock that counts steps from where it was.
+      ! A continuous load differs by the round-off of a clock that counts steps from its start.
       call state%loads%find_largest(largest)
       largest = same_step*max(largest, abs(checkpoint%load))
       if (all(abs(state%load - checkpoint%load) <= largest)) state%load = checkpoint%load
@@ -73,7 +73,7 @@ contains
       if (abs(residual) > 0.0_wp) state%at_begin = state%at_begin + residual
    end subroutine resume_state
 
-   !> The same method goes on with what it remembers, unless a load jumps at the start.
+   !> The same method continues with its memory, unless a load jumps at the start.
    subroutine resume_steps(state, stepper, before, checkpoint)
       type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
@@ -198,7 +198,7 @@ contains
 
       call state%loads%find_acting()
       call state%loads%set_begin(state%begin)
-      ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
+      ! The history is that of the whole axial load; the motion takes its difference from the constant one.
       if (state%loads%acts(top_axial)) then
          state%loads%signal(top_axial)%value = state%loads%signal(top_axial)%value - structure%axial_load
       end if

@@ -42,7 +42,7 @@ module rbs_solve_time_state
       procedure :: update_monitor
    end type state_type
 
-   !> A method of integration. What it needs from step to step is in its own type.
+   !> A method of integration. Its own type holds its memory from step to step.
    type, abstract :: stepper_type
       !> Steps that were cut so far: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
@@ -50,9 +50,9 @@ module rbs_solve_time_state
       integer :: steps = 0
       !> Longest step taken, if the method chooses its steps; 0 if they are as planned [s]
       real(wp) :: longest_step = 0.0_wp
-      !> Whether what it needs before the first step has been found
+      !> Whether its values before the first step have been found
       logical :: begun = .false.
-      !> Method and its setting: a run that goes on with the same remembers its steps
+      !> Method and its setting: a continued run with the same keeps its steps
       integer :: method = 0
       real(wp) :: setting = 0.0_wp
    contains
@@ -76,12 +76,12 @@ module rbs_solve_time_state
 
 contains
 
-   !> Look at the state for the first time; what to watch for is known.
+   !> Monitor the state for the first time; the limit states are known.
    subroutine begin_monitor(self, collapse_drift, floor)
       class(state_type), intent(inout) :: self
       !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
       real(wp), intent(in) :: collapse_drift
-      !> Whether the acceleration of the top is looked at
+      !> Whether the acceleration of the top is monitored
       logical, intent(in) :: floor
 
       call self%monitor%begin(self%motion, self%springs, self%q, self%v, self%load, self%clock, &
@@ -107,8 +107,8 @@ contains
       self%begun = .false.
    end subroutine restart
 
-   !> Save or restore what the next step depends on besides the state. A method whose steps depend on the
-   !> state alone inherits this procedure.
+   !> Save or restore the values on which the next step depends besides the state. A method whose steps depend
+   !> on the state alone inherits this procedure.
    subroutine resume(self, state, stream)
       class(stepper_type), intent(inout) :: self
       type(state_type), intent(inout) :: state

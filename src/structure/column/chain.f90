@@ -72,7 +72,8 @@ contains
       end do
    end subroutine displacements
 
-   !> What forces on the bodies do on the deformations of the joints, B'^-1 g, from the top down.
+   !> Forces conjugate to the deformations of the joints, B'^-1 g, from those on the bodies, from the top
+   !> down.
    pure subroutine joint_forces(n, kinds, lower, upper, g, f)
       integer, intent(in) :: n, kinds
       real(wp), intent(in) :: lower(n), upper(n), g(kinds*n)

@@ -314,7 +314,7 @@ contains
       end do
    end subroutine chain_accelerations
 
-   !> Power of the loads, and of what they add to the axial forces that do second-order work [W].
+   !> Power of the loads, and of their share of the axial forces that do second-order work [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)

@@ -46,8 +46,8 @@ module rbs_structure_column_column_record
    end type damping_record
 
    !> A column of `n` rigid bodies; joint i is at the bottom of body i, counted from the ground. Where the
-   !> top is fixed against rotation, joint n + 1 is between body n and what holds it; joint 0 is that
-   !> beneath a footing, on which joint 1 then stands.
+   !> top is fixed against rotation, joint n + 1 is between body n and its support; joint 0 is that
+   !> beneath a footing, and joint 1 is on top of it.
    type, extends(visited_record) :: column_record
       integer :: n = 1
       real(wp) :: height = unset, mass = unset
@@ -65,7 +65,7 @@ module rbs_structure_column_column_record
       real(wp) :: top_mass = 0.0_wp, top_inertia = 0.0_wp
       !> 'free', or 'fixed' against rotation
       character(len=16) :: top = 'free'
-      !> Whether the column stands on a footing, which is so if springs are given for joint 0; mass [kg],
+      !> Whether there is a footing, that is, whether springs are given for joint 0; mass [kg],
       !> rotary inertia about its centroid [kg m2] and height [m] of the footing
       logical :: footing = .false.
       real(wp) :: footing_mass = 0.0_wp, footing_inertia = 0.0_wp, footing_height = 0.0_wp, depth = 0.0_wp
@@ -192,7 +192,7 @@ contains
          end if
       end subroutine check_top
 
-      !> A footing stands on springs of its own.
+      !> A footing needs springs of its own.
       subroutine check_footing()
 
          if (self%footing) return

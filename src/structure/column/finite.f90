@@ -5,7 +5,7 @@
 !>
 !>     b_i = T_{i-1} + u_i t_{i-1} + w_i e_{i-1},  c_i = b_i + lower_i e_i,  T_i = b_i + length_i e_i
 !>
-!> The mass matrix of the centroids is diagonal, so every body is looked at by itself: joint i acts on
+!> The mass matrix of the centroids is diagonal, so the equations of every body stay apart: joint i acts on
 !> it at its bottom with -V_i t_{i-1} - N_i e_{i-1} and -M_i, joint i + 1 with the opposite. Forces at the
 !> top are those of a joint n + 1. The accelerations of the unknowns are those of the bottom of a body
 !> relative to the top of the one below,
@@ -122,7 +122,7 @@ contains
    end subroutine accelerate_one_body
 
    !> Accelerations under the known forces. If the joints do not open the axial forces are not known: they
-   !> are left out, and the equations are set up which say that the accelerations w'' vanish,
+   !> are left out, and the equations are set up by which the accelerations w'' vanish,
    !> w''(N) = w''(0) - G N = 0; the reactions in `work` are then w''(0).
    subroutine accelerate_under_forces(column, q, v, f, load, work, a)
       class(finite_chain_type), intent(in) :: column
@@ -160,7 +160,7 @@ contains
       turn_below = 0.0_wp
       flexibility = 0.0_wp
       held = [0.0_wp, 1.0_wp]
-      ! Seen from a frame that falls, the ground is what accelerates, upwards by the weight.
+      ! In a frame of reference that falls, the ground accelerates upward by gravity.
       below = [load(horizontal), load(vertical) + column%gravity]
       do i = 1, n
          s = sin(q(i, flexure))
@@ -263,7 +263,7 @@ contains
       force(2) = -(self%weight(self%n) - self%gravity*self%mass(self%n)) - (load(top_axial) + self%axial_load)
    end subroutine find_top_force
 
-   !> Find the reactions of joints that do not open, and add what they give to the accelerations.
+   !> Find the reactions of joints that do not open, and add the accelerations that they cause.
    subroutine add_reactions(column, q, work, a)
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)

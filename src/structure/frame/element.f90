@@ -1,4 +1,4 @@
-!> An element of a frame: what lies between two nodes, condensed to its ends.
+!> An element of a frame: the part between two nodes, condensed to its ends.
 !>
 !> Elongation and rotations of the ends against the chord, q, follow from the displacements of the nodes, and
 !> work with axial force and end moments, s. By equilibrium the springs in the element carry f = p . s, so
@@ -93,8 +93,8 @@ module rbs_structure_frame_element
       !> Whether it is the panel of a node: one spring that deforms by the rotation of columns against beams
       logical :: is_panel = .false.
       type(tangent_layout) :: layout
-      !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); what
-      !> axial force and end moments do on w and theta of each (3, 2, joints); distances of the layers
+      !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); motion
+      !> (w, theta) of each by axial force and end moments (3, 2, joints); distances of the layers
       !> (springs) [m]
       logical :: layered = .false.
       integer, allocatable :: first(:)
@@ -267,7 +267,7 @@ contains
       !> Of `find_tangent`
       real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
       !> Compatibility error: motion of the ends less the deformations; forces of the springs, the share of
-      !> the dead load that acts, and what it does in them
+      !> the dead load that acts, and its forces in them
       real(wp), intent(in) :: gap(3), f(m + n), dead, dead_force(m + n)
       real(wp), intent(out) :: s(3), correction(m + n)
       real(wp) :: force, left(3)
@@ -310,8 +310,8 @@ contains
       q(2:) = [alike + against, alike - against]
    end function motion_of_rest
 
-   !> Force of a spring or joint less what forces of the ends do there, term by term. Round-off of it is none:
-   !> a joint all but without stiffness would go far for it, and back in the next trial.
+   !> Force of a spring or joint less the effect of end forces there, term by term. Round-off of it is none:
+   !> a joint all but without stiffness would move far for it, and back in the next trial.
    pure real(wp) function unbalance(force, first, second, third)
       real(wp), intent(in) :: force, first, second, third
 

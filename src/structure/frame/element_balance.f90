@@ -68,8 +68,8 @@ contains
       rotation = sum(e%lean(3, :)*x(e%unknown))
    end function chord_rotation
 
-   !> Motion of the ends of an element less that which its springs and its dead load make: what its elastic
-   !> rest has to follow.
+   !> Motion of the ends of an element less that which its springs and its dead load make: the part that its
+   !> elastic rest has to follow.
    pure function compatibility_error(e, q, d, dead) result(gap)
       type(frame_element), intent(in) :: e
       !> Motion of the ends; deformations of all springs; share of the dead load that acts
@@ -163,7 +163,7 @@ contains
       end associate
    end subroutine balance_ends
 
-   !> Add what axial force and moments of the ends of an element do on the unknowns.
+   !> Add the forces on the unknowns by axial force and end moments of an element.
    pure subroutine add_end_forces(e, s, g)
       type(frame_element), intent(in) :: e
       real(wp), intent(in) :: s(3)
@@ -191,7 +191,7 @@ contains
    end subroutine add_along
 
    !> Second-order forces of the compression of an element, N sum l r (r . x): rows r are the rotations of its
-   !> rigid ends and of its chord. What bends off the chord is in the elastic rest.
+   !> rigid ends and of its chord. Bending off the chord belongs to the elastic rest.
    pure subroutine add_second_order(e, x, g)
       type(frame_element), intent(in) :: e
       real(wp), intent(in), contiguous :: x(:)

@@ -133,7 +133,7 @@ module rbs_structure_frame_frame
          real(wp), intent(in), contiguous :: d(:)
       end function work_of_dead_load
 
-      !> Of dead load and second-order work, and energy of what is elastic.
+      !> Of dead load and second-order work, and energy of the elastic parts.
       pure real(wp) module function potential_energy(self, d) result(energy)
          class(frame_type), intent(in) :: self
          real(wp), intent(in), contiguous :: d(:)
@@ -177,7 +177,7 @@ module rbs_structure_frame_frame
       end function next_failed_member
 
       !> Take the forces of a member away. The energy of its elastic rest is lost with it. Its springs keep
-      !> what dead load does in them where it is carried to the nodes, on which it stays.
+      !> the work of the dead load in them, which is carried to the nodes and stays there.
       module subroutine remove_member(self, member, springs)
          class(frame_type), intent(in) :: self
          integer, intent(in) :: member
@@ -308,7 +308,7 @@ contains
       dd(self%springs + 1:) = dx
    end subroutine spring_rates
 
-   !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
+   !> Take rates that are round-off of larger ones for zero: a spring at rest on a corner of its
    !> curve, as in a mechanism beside it, must not be sent either way. Larger ones are those of the ends of
    !> its element, and of all elements, as displacements are round-off of each other.
    pure subroutine drop_round_off(self, tangent, dx, dd)
@@ -372,7 +372,7 @@ contains
       dx = dd(self%springs + 1:)
    end subroutine unknown_rates
 
-   !> Forces on the unknowns: the lateral load and the dead one, less what springs and elastic rest carry,
+   !> Forces on the unknowns: the lateral load and the dead one, less forces of springs and elastic rest,
    !> and second-order forces, of the axial forces under the dead load; corrections of the deformations that
    !> bring the inside of the elements to equilibrium.
    subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
@@ -470,7 +470,7 @@ contains
       end do
    end subroutine storey_drifts
 
-   !> Refuse an axial load: what columns carry follows from the dead load.
+   !> Refuse an axial load: that of columns follows from the dead load.
    subroutine check_loads(self, acts, error)
       class(frame_type), intent(in) :: self
       logical, intent(in) :: acts(signals)

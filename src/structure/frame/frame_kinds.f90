@@ -16,8 +16,8 @@ module rbs_structure_frame_frame_kinds
    real(wp), parameter :: share(3) = [1.0_wp/6.0_wp, 2.0_wp/3.0_wp, 1.0_wp/6.0_wp]
    real(wp), parameter :: point(3) = [0.0_wp, 0.5_wp, 1.0_wp]
 
-   !> Stiffness of a rigid member along it and in bending over the largest of the others: what it still gives
-   !> way and the digits that it costs are both some 1e-7 of the results.
+   !> Stiffness of a rigid member along it and in bending over the largest of the others: its
+   !> deformation and the digits that it costs are both some 1e-7 of the results.
    real(wp), parameter :: rigid(2) = [1.0e5_wp, 1.0e7_wp]
 
 contains

@@ -1,4 +1,4 @@
-!> Dead load of a frame: the compression of its members, its work, and the energy of what is elastic.
+!> Dead load of a frame: the compression of its members, its work, and the energy of the elastic parts.
 submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_load
    use rbs_structure_frame_element_balance, only: energy_of_rest
    implicit none

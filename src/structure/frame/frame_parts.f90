@@ -1,4 +1,4 @@
-!> Nodes and members of a frame from what the user gave: the grid is laid out, names are found, and everything
+!> Nodes and members of a frame from the input: the grid is laid out, names are found, and everything
 !> that is wrong gets a message with its remedy.
 module rbs_structure_frame_frame_parts
    use rbs_base_check, only: is_given
@@ -17,7 +17,7 @@ module rbs_structure_frame_frame_parts
    !> Nodes nearer than this share of the size of the frame are at one place.
    real(wp), parameter :: one_place = 1.0e-9_wp
 
-   !> Share of its length that a member may differ by from what its kind was made for.
+   !> Largest difference of the length of a member from the length that its kind was made for, as a share.
    real(wp), parameter :: one_length = 0.01_wp
 
    !> The kind of a member of the grid that is not there.
@@ -259,7 +259,7 @@ contains
       node%held(3) = support == 'fixed'
    end subroutine hold
 
-   !> Nodes by name: new ones, and what those of the grid have in addition.
+   !> Nodes by name: new ones, and additions to those of the grid.
    subroutine put_nodes(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record

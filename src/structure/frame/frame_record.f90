@@ -56,7 +56,7 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_cell
    end type cell_record
 
-   !> A node, or what one of a grid has in addition.
+   !> A node, or additions to a node of the grid.
    type, extends(visited_record), public :: node_record
       character(len=name_length) :: name = ''
       real(wp) :: x = unset, y = unset
@@ -123,7 +123,7 @@ module rbs_structure_frame_frame_record
 
 contains
 
-   !> Make room for what a group gives.
+   !> Make room for the values of a group.
    subroutine open_group(self, group)
       class(frame_record), intent(inout) :: self
       character(len=*), intent(in) :: group
@@ -338,7 +338,7 @@ contains
       call v%key('time', self%time, 's', any_number, 'time of the record from which on it carries nothing')
    end subroutine visit_loss
 
-   !> Height of the grid or of the nodes [m]; what is not given counts as zero.
+   !> Height of the grid or of the nodes [m]; values that are not given count as zero.
    pure real(wp) function total_height(self) result(height)
       class(frame_record), intent(in) :: self
       real(wp) :: lowest

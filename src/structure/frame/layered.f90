@@ -12,7 +12,7 @@ module rbs_structure_frame_layered
              take_joints_off
 
    !> Joints without stiffness share a motion as if each had this part of its initial one. It costs as many
-   !> digits, and what it adds is taken away by refinement.
+   !> digits, and refinement removes its effect.
    real(wp), parameter :: shared = 1.0e-6_wp
 
    !> Flexibility of springs in a row, its adjugate and determinant, and how many of them soften.
@@ -24,7 +24,7 @@ module rbs_structure_frame_layered
 contains
 
    !> Stiffness of an element with joints of layers, and its joints: compliance of the opening at the centre
-   !> of stiffness, the place of this, compliance of the rotation, and what axial force and end moments do
+   !> of stiffness, the place of this, compliance of the rotation, and effect of axial force and end moments
    !> about the centre.
    !>
    !> The flexibility F is a sum of p p'/k, to which any joint may add much more than the others. With
@@ -141,7 +141,7 @@ contains
       !> Of `layered_tangent`
       real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1)
       !> Compatibility error: motion of the ends less that of the joints; deformations and forces of the
-      !> springs; the share of the dead load that acts, and what it does in them
+      !> springs; the share of the dead load that acts, and its forces in them
       real(wp), intent(in) :: gap(3), d(m), f(m), dead, dead_force(m)
       real(wp), intent(out) :: s(3), correction(m)
       real(wp) :: all(3), more(3), force, moment, moved(2)
@@ -188,7 +188,7 @@ contains
       end do
    end subroutine layered_forces
 
-   !> Force of the springs of a joint and moment about its centre of stiffness, less what dead load does in
+   !> Force of the springs of a joint and moment about its centre of stiffness, less those of dead load in
    !> them.
    pure subroutine add_up(n, y, centre, f, dead, dead_force, force, moment)
       integer, intent(in) :: n
@@ -292,7 +292,7 @@ contains
    pure subroutine drop_small_rates(e, m, stiffness, soft, terms, share, dd)
       type(frame_element), intent(in) :: e
       integer, intent(in) :: m
-      !> See `layered_tangent`; sizes of what elongation and rotations of the ends are sums of
+      !> See `layered_tangent`; sizes of the terms of elongation and rotations of the ends
       real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1), terms(3)
       real(wp), intent(in) :: share
       real(wp), intent(inout) :: dd(m)

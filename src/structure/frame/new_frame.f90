@@ -1,5 +1,5 @@
-!> A planar frame from its nodes and members: numbers of the unknowns, elements with their springs, and what
-!> dead load does in them.
+!> A planar frame from its nodes and members: numbers of the unknowns, elements with their springs, and forces
+!> of the dead load in them.
 module rbs_structure_frame_new_frame
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset
@@ -16,7 +16,7 @@ module rbs_structure_frame_new_frame
 
    public :: frame_node, frame_member, new_frame, is_beam
 
-   !> A node: place [m], what supports hold (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
+   !> A node: place [m], whether supports hold it (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
    type :: frame_node
       character(len=name_length) :: name = ''
       !> Floor of the grid, -1 for a node that is none of it
@@ -34,11 +34,11 @@ module rbs_structure_frame_new_frame
       integer :: like = 0
    end type frame_node
 
-   !> A member from node to node: rigid ends, and springs in what is elastic otherwise.
+   !> A member from node to node: rigid ends, and springs in the part that is elastic otherwise.
    type :: frame_member
       character(len=name_length) :: name = ''
       integer :: node(2) = 0
-      !> Number of its kind in what the user gave
+      !> Number of its kind in the input
       integer :: kind_of = 0
       !> Lengths of the rigid ends [m]
       real(wp) :: rigid(2) = 0.0_wp
@@ -258,7 +258,7 @@ contains
       frame%pattern%last = frame%unknowns
    end subroutine set_ground
 
-   !> Geometry of the elements, their springs, and what dead load does in them.
+   !> Geometry of the elements, their springs, and forces of the dead load in them.
    subroutine set_elements(frame, node, member, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
