@@ -118,30 +118,38 @@ def _number_or_switch(value: Any, name: str) -> float:
 
 
 class Answer(NamedTuple):
-    """An answer of Fortran: text, values and rows, each of which may be empty, and a status."""
+    """An answer of Fortran: text, values and rows, each of which may be empty, and a status.
+
+    `kept` is what it holds beyond its text and values.
+    """
 
     text: str
     values: Array
     rows: Array
     status: int
+    kept: _Kept | None
 
 
 _FLOAT = np.dtype(float).str
 
 
-class _Rows:
-    """Rows that Fortran keeps, for numpy; the last array that shows them releases them."""
+class _Kept:
+    """An answer that Fortran keeps; the last object that refers to it releases it.
+
+    Of its rows it is an array for numpy.
+    """
 
     def __init__(
         self, answer: NDArray[np.int32], address: NDArray[np.int32], shape: tuple[int, int]
     ) -> None:
         self.answer = answer
-        self.__array_interface__ = {
-            "shape": shape,
-            "typestr": _FLOAT,
-            "data": (int(address.view(np.intp)[0]), False),
-            "version": 3,
-        }
+        if shape[0]:
+            self.__array_interface__ = {
+                "shape": shape,
+                "typestr": _FLOAT,
+                "data": (int(address.view(np.intp)[0]), False),
+                "version": 3,
+            }
 
     def __del__(self, release: Callable[[NDArray[np.int32]], None] = _rbsdem.rbs_release) -> None:
         release(self.answer)
@@ -149,6 +157,7 @@ class _Rows:
 
 _NOTHING = np.empty(0)
 _NO_CONTROL = np.zeros(2, np.int32)
+_NO_STRUCTURE = np.zeros(2, np.int32)
 
 #: Control words of runs that Ctrl-C ends.
 _RUNNING: list[NDArray[np.int32]] = []
@@ -202,11 +211,13 @@ def _ask(
     what: str,
     statement: Statement | str = "",
     control: NDArray[np.int32] = _NO_CONTROL,
+    made: Made | None = None,
     **arrays: Any,
 ) -> Answer:
     """Return an answer of the Fortran part; its module `rbs_bindings_evaluate` lists all.
 
-    Numbers, switches and arrays go under their names; None is left out.
+    Numbers, switches and arrays go under their names; None is left out. `made` is the structure
+    that is asked about.
     """
     text, numbers = statement if isinstance(statement, Statement) else (statement, [])
     given = {k: np.asarray(v, float).ravel() for k, v in arrays.items() if v is not None}
@@ -218,13 +229,15 @@ def _ask(
         numbers,
         " ".join([f"{name}:{piece.size}" for name, piece in given.items()]),
         np.concatenate(pieces) if len(pieces) > 1 else pieces[0] if pieces else _NOTHING,
+        _NO_STRUCTURE if made is None else made.address,
         control,
     )
-    status, length, count, width, kept = sizes.tolist()
-    rows = np.asarray(_Rows(answer, address, (kept, width))) if kept else np.empty((0, width))
-    # An answer without rows is released when it has been read, an empty one at once.
+    status, length, count, width, kept, holds = sizes.tolist()
+    # An answer without rows or structure is released when it has been read, an empty one at once.
     raw, values = _rbsdem.rbs_read(answer, length, count) if answer.any() else (b"", _NOTHING)
-    return Answer(raw[:length].decode("utf-8", "replace"), values, rows, status)
+    whole = _Kept(answer, address, (kept, width)) if kept or holds else None
+    rows = np.asarray(whole) if kept else np.empty((0, width))
+    return Answer(raw[:length].decode("utf-8", "replace"), values, rows, status, whole)
 
 
 def evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer:
@@ -234,6 +247,34 @@ def evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer
         error = SolveError if answer.status == _ANALYSIS_FAILED else InputError
         raise error(answer.text)
     return answer
+
+
+class Made:
+    """A structure that Fortran has checked, and keeps for all analyses of it.
+
+    Attributes
+    ----------
+    statement : Statement
+        Its keys, as the groups of a case file.
+    text : str
+        Parts of a frame, and notes on the structure, a line each.
+    values : ndarray
+        Numbers of these parts.
+    """
+
+    def __init__(self, statement: Statement) -> None:
+        self.statement = statement
+        self.text, self.values, _, _, self._kept = evaluate("check_structure", statement)
+
+    @property
+    def address(self) -> NDArray[np.int32]:
+        """Where it is, for Fortran."""
+        assert self._kept is not None
+        return self._kept.answer
+
+    def __reduce__(self) -> tuple[type[Made], tuple[Statement]]:
+        """Make it anew in another process."""
+        return Made, (self.statement,)
 
 
 def version() -> str:
@@ -332,7 +373,8 @@ Run = tuple[dict[str, Array], Array | None, dict[str, Any], SolveError | None, s
 
 
 def cyclic(
-    column: Statement,
+    structure: Made,
+    settings: Statement,
     by_force: bool,
     target: Array,
     axial_load: Array | None,
@@ -341,18 +383,19 @@ def cyclic(
 ) -> Run:
     """Follow a static path through displacements or forces.
 
-    `column` holds the settings of the analysis too; without `axial_load` it is constant, without
-    `before` the column is virgin. With `corners` there are rows between the targets too, where a
-    spring leaves its line.
+    Without `axial_load` it is constant, without `before` the column is virgin. With `corners` there
+    are rows between the targets too, where a spring leaves its line.
     """
     given: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
+    given |= {"before": before, "corners": corners}
     with _interruptible() as control:
-        answer = _ask("cyclic", column, control, before=before, corners=corners, **given)
+        answer = _ask("cyclic", settings, control, structure, **given)
     return _finish(answer, answer.values)
 
 
 def time_history(
-    column: Statement,
+    structure: Made,
+    settings: Statement,
     time: Array,
     loads: Mapping[str, Array],
     initial: Array | None,
@@ -372,7 +415,7 @@ def time_history(
     told = False
     while True:
         with _interruptible() as control:
-            answer = _ask("time_history", column, control, told=told, **given)
+            answer = _ask("time_history", settings, control, structure, told=told, **given)
         if answer.status != _LONG_RUN:
             break
         tell(answer.text)
@@ -474,7 +517,7 @@ def _numbered(text: str) -> Iterator[tuple[int, str]]:
 def read_case(path: str | os.PathLike[str]) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
     """Return a case file as statement, times, values of the five drives, and which of them act."""
     path = _arguments.file(path)
-    text, numbers, rows, _ = evaluate("read_case", os.fsdecode(path))
+    text, numbers, rows, *_ = evaluate("read_case", os.fsdecode(path))
     acting = rows[1:, 0].astype(np.int32)
     return Statement(text, numbers.tolist()), rows[0, 1:].copy(), rows[1:, 1:].T, acting
 

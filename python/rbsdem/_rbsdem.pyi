@@ -14,6 +14,7 @@ def rbs_evaluate(
     number: Sequence[float],
     names: str,
     values: Floats,
+    made: Integers,
     control: Integers,
 ) -> tuple[Integers, Integers, Integers]: ...
 def rbs_read(answer: Integers, length: int, count: int) -> tuple[bytes, Floats]: ...

@@ -22,7 +22,6 @@ module rbs_bindings_evaluate
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_build, only: point_values, profile_values, section_figures, shear_values
    use rbs_solve_ensemble_run_result, only: measure_names
-   use rbs_solve_end_state, only: end_state
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_structure_frame_frame, only: frame_type
@@ -140,15 +139,20 @@ contains
    !> Parts of a frame, and notes on a structure that is allowed, a line each; its modes; or its matrices.
    subroutine evaluate_structure(request, answer)
       type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
+      type(answer_type), intent(inout), target :: answer
       type(case_record) :: case
-      class(structure_type), allocatable, target :: structure
+      class(structure_type), pointer :: structure
       type(frame_type), pointer :: frame
-      type(end_state) :: before
       type(message_list) :: notes
 
-      call structure_from_statements(request%statement, request%number, structure, before, case, answer%error)
-      if (allocated(answer%error)) return
+      if (associated(request%made)) then
+         structure => request%made%structure
+      else
+         call structure_from_statements(request%statement, request%number, answer%structure, answer%before, &
+                                        case, answer%error)
+         if (allocated(answer%error)) return
+         structure => answer%structure
+      end if
       frame => null()
       select type (structure)
       type is (frame_type)

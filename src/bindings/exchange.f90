@@ -3,6 +3,8 @@
 module rbs_bindings_exchange
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type
+   use rbs_solve_end_state, only: end_state
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -18,6 +20,8 @@ module rbs_bindings_exchange
       !> one after the other
       character(len=:), allocatable :: names
       real(c_double), pointer, contiguous :: input(:) => null()
+      !> The answer that holds the structure of an analysis
+      type(answer_type), pointer :: made => null()
    contains
       procedure :: array
       procedure :: whole
@@ -31,6 +35,9 @@ module rbs_bindings_exchange
       !> A row of Python a column; if not all of them count, how many do
       real(c_double), allocatable :: rows(:, :)
       integer :: kept = -1
+      !> A structure, which all analyses of it share, and the state that they begin in
+      class(structure_type), allocatable :: structure
+      type(end_state) :: before
    end type answer_type
 
 contains

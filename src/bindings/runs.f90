@@ -7,7 +7,7 @@ module rbs_bindings_runs
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_bindings_exchange, only: request_type, answer_type
-   use rbs_bindings_statements, only: structure_from_statements
+   use rbs_bindings_statements, only: case_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_loading_signal, only: signal_type
@@ -41,7 +41,7 @@ module rbs_bindings_runs
    end type word_progress
 
    type :: run_type
-      class(structure_type), allocatable :: structure
+      class(structure_type), pointer :: structure => null()
       !> Settings of analysis and output
       type(case_record) :: case
       type(array_recorder) :: recorder
@@ -79,9 +79,10 @@ contains
 
       watches => request%array('watches')
       call run%monitor%watch_for(watches_of(watches), size(watches)/6)
-      call structure_from_statements(request%statement, request%number, run%structure, run%task%before, &
-                                     run%case, answer%error)
+      call case_from_statements(request%statement, request%number, run%case, answer%error)
       if (.not. allocated(answer%error)) then
+         run%structure => request%made%structure
+         run%task%before = request%made%before
          associate (output => run%case%output)
             run%recorder%channels = new_channels(run%structure, request%what /= 'cyclic', output%openings, &
                                                  output%motion)

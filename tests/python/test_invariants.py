@@ -606,7 +606,7 @@ def each_stated(column: rbsdem.Column) -> rbsdem.Column:
                     put(layer.statement("layer_spring", id=at))
                 put(_core.group("layers", {"joint": [joint], "y": places, "spring": own}))
                 ids = own[-1]
-    object.__setattr__(other, "_statement", _core.Statement("\n".join(text), numbers))
+    object.__setattr__(other, "_made", _core.Made(_core.Statement("\n".join(text), numbers)))
     return other
 
 

@@ -281,7 +281,7 @@ def read_peer(path: str | os.PathLike[str], *, units: tuple[str, str] | None = N
             '"kN")'
         )
     words = [_core.word(_arguments.text(unit, "units")) for unit in pair]
-    name, _, (displacement, force), _ = _core.evaluate(
+    name, _, (displacement, force), *_ = _core.evaluate(
         "read_history", "\n".join([*words, _arguments.file(path)])
     )
     return PeerTest(name, displacement.copy(), force.copy())

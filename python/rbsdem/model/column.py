@@ -371,8 +371,8 @@ class Column:
     footing: Footing | None = None
 
     if TYPE_CHECKING:
-        #: Its keys, as the groups of a case file.
-        _statement: ClassVar[_core.Statement]
+        #: What Fortran has made of it.
+        _made: ClassVar[_core.Made]
 
     def __post_init__(self) -> None:
         def put(name: str, value: Any) -> None:
@@ -392,9 +392,8 @@ class Column:
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_arguments.number(self.damping, "column: damping")))
         # Once for all analyses, as a frozen column does not change.
-        put("_statement", self._state())
-        notes = _core.evaluate("check_structure", self._statement).text.splitlines()
-        for note in notes if NOTES_ON.get() else ():
+        put("_made", _core.Made(self._state()))
+        for note in self._made.text.splitlines() if NOTES_ON.get() else ():
             warn(note)
 
     def __repr__(self) -> str:
@@ -403,6 +402,11 @@ class Column:
             f"Column(height={self.height:g}, n={self.n}, kinematics={self.kinematics!r}, "
             f"axial_load={self.axial_load:g}, flexure: {', '.join(dict.fromkeys(kinds))})"
         )
+
+    @property
+    def _statement(self) -> _core.Statement:
+        """Its keys, as the groups of a case file."""
+        return self._made.statement
 
     @property
     def unknowns(self) -> int:

@@ -411,20 +411,50 @@ class MemberGeometry:
         """Its load along `normal`, per clear length [N/m]."""
         return self.load * float(abs(self.axis[0]) * self.axis[0])
 
+    @property
+    def hung(self) -> float:
+        """Moment of its load in the middle between hinges, times 4 [N m]."""
+        return 0.5 * self.across_load * self.clear**2
+
     def moment(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
         """Return moments along the clear length, positive with tension on the side of `normal`.
 
         `first` and `last` are the moments of its ends, clockwise on the member [N m]; `shares` are
         places from 0 to 1.
         """
-        s, hung = np.asarray(shares, float), 0.5 * self.across_load * self.clear**2
         one, two = np.asarray(first, float), np.asarray(last, float)
-        return np.asarray(one * (1 - s) - two * s + hung * s * (1 - s))
+        return parabola(one, two, self.hung, np.asarray(shares, float))
 
     def shear(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
         """Return shear forces along the clear length: the loss of moment per length [N]."""
         s, sway = np.asarray(shares, float), (np.asarray(first) + np.asarray(last)) / self.clear
         return np.asarray(sway + self.across_load * self.clear * (s - 0.5))
+
+
+def parabola(first: Array, last: Array, hung: float | Array, shares: Array) -> Array:
+    """Return moments along clear lengths, see `MemberGeometry.moment`."""
+    return np.asarray(first * (1 - shares) - last * shares + hung * shares * (1 - shares))
+
+
+class Span(NamedTuple):
+    """A loaded member that springs bend.
+
+    Attributes
+    ----------
+    member : int
+        Its number, from 0.
+    hung : float
+        `MemberGeometry.hung`.
+    springs : tuple of FrameSpring
+        Its flexural springs; only those of layers if it has some, as others there never yield.
+    columns : tuple of int
+        Their columns in a result.
+    """
+
+    member: int
+    hung: float
+    springs: tuple[FrameSpring, ...]
+    columns: tuple[int, ...]
 
 
 @dataclass(frozen=True, repr=False)
@@ -510,10 +540,8 @@ class Frame:
     losses: Mapping[str, float] | None = None
 
     if TYPE_CHECKING:
-        #: Its keys, as the groups of a case file.
-        _statement: ClassVar[_core.Statement]
-        #: The answer of Fortran: its parts, and notes.
-        _answer: ClassVar[_core.Answer]
+        #: What Fortran has made of it.
+        _made: ClassVar[_core.Made]
 
     #: Joints of a frame do not open by themselves.
     opens: ClassVar[bool] = True
@@ -553,10 +581,8 @@ class Frame:
             put("losses", {k: _arguments.number(v, "frame: losses") for k, v in losses})
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
-        put("_statement", self._state())
-        put("_answer", _core.evaluate("check_structure", self._statement))
-        notes = self._answer.text.splitlines()[3:]
-        for note in notes if NOTES_ON.get() else ():
+        put("_made", _core.Made(self._state()))
+        for note in self._made.text.splitlines()[3:] if NOTES_ON.get() else ():
             warn(note)
 
     def __repr__(self) -> str:
@@ -567,13 +593,18 @@ class Frame:
             f"kinematics={self.kinematics!r})"
         )
 
+    @property
+    def _statement(self) -> _core.Statement:
+        """Its keys, as the groups of a case file."""
+        return self._made.statement
+
     def __hash__(self) -> int:
         return hash((self._statement.text, *self._statement.numbers))
 
     @cached_property
     def parts(self) -> FrameParts:
         """Nodes, members and springs as they were laid out, with the forces of the dead load."""
-        answer = self._answer
+        answer = self._made
         lines = answer.text.split("\n")[:3]
         nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in lines)
         n, m, s = len(nodes), len(members), len(springs)
@@ -611,6 +642,22 @@ class Frame:
             found[name] = MemberGeometry(
                 name, start, end, axis, rigid, length - sum(rigid), begin, self.load_of(name)
             )
+        return found
+
+    @cached_property
+    def spans(self) -> list[Span]:
+        """Loaded members that springs bend."""
+        bent: dict[str, list[tuple[FrameSpring, int]]] = {}
+        for column, spring in enumerate(self.parts.springs_of("flexure")):
+            if spring.group == "flexure":
+                bent.setdefault(spring.member, []).append((spring, column))
+        found = []
+        for number, where in enumerate(self.geometry.values()):
+            own = bent.get(where.name, [])
+            own = [pair for pair in own if pair[0].rule == "layered"] or own
+            if own and where.hung:
+                springs, columns = zip(*own, strict=True)
+                found.append(Span(number, where.hung, springs, columns))
         return found
 
     @cached_property
@@ -808,15 +855,19 @@ class Frame:
         for node in self.nodes:
             parts += node._groups()
         parts += [member._group(names[_stated(member.kind)]) for member in self.members]
-        parts += [
-            _core.group("loss", {"member": _core.Text(member), "time": time})
-            for member, time in (self.losses or {}).items()
-        ]
+        parts += self._lost()
         if self.panel is not None:
             parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
         if isinstance(self.damping, Damping):
             parts.append(self.damping.statement())
         return _core.joined(parts)
+
+    def _lost(self) -> list[_core.Statement]:
+        """Return the groups of members that are lost."""
+        return [
+            _core.group("loss", {"member": _core.Text(member), "time": time})
+            for member, time in (self.losses or {}).items()
+        ]
 
     def _floors(self) -> Iterator[_core.Statement]:
         masses, loads = self.floor_mass, self.beam_load

@@ -14,7 +14,7 @@ from rbsdem._files import data_frame, text_table
 from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, place_of
+from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, parabola, place_of
 from rbsdem.model.rows import LimitState, LimitStates, Rows
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
@@ -291,7 +291,7 @@ class FrameResult(Rows):
         The latter is T_e of ASCE 41: that of the mass which the first mode moves on K_e, the first
         of the two lines up to the largest force.
         """
-        answer = _core.evaluate("modes", self.frame._statement, count=1)
+        answer = _core.evaluate("modes", made=self.frame._made, count=1)
         found = {"uncracked": 2 * np.pi / float(answer.values[1])}
         if not self.dynamic:
             u, v = self.displacement - self.displacement[0], self.base_shear - self.base_shear[0]
@@ -559,32 +559,27 @@ def span_note(result: FrameResult) -> str:
     stands it neither cracks nor yields: it is compared with the moment at which the flexural
     springs of the member yield, and with the largest that they have.
     """
-    frame, parts = result.frame, result.frame.parts
-    bent: dict[str, list[tuple[FrameSpring, float]]] = {}
-    moments = result.springs.get("moment", np.empty((0, 0)))
-    largest_of = np.abs(moments).max(axis=0, initial=0.0).tolist()
-    for spring, largest in zip(parts.springs_of("flexure"), largest_of, strict=True):
-        if spring.group == "flexure":
-            bent.setdefault(spring.member, []).append((spring, largest))
+    frame, spans = result.frame, result.frame.spans
+    if not spans or not result.time.size:
+        return ""
+    at, hung = [span.member for span in spans], np.array([span.hung for span in spans])
+    largest_of = np.abs(result.springs["moment"]).max(axis=0).tolist()
+    first, last = result.moment_from[:, at], result.moment_to[:, at]
+    shares = 0.5 - (first + last) / (2 * hung)
+    inside = (shares > 0) & (shares < 1)
+    moments = np.abs(np.where(inside, parabola(first, last, hung, shares), 0.0))
     found: list[tuple[float, str, float, float]] = []
-    for name, all_springs in bent.items():
-        where, at = frame.geometry[name], parts.members.index(name)
-        if not where.load:
-            continue
-        # Beside joints of layers stand springs that never yield.
-        layered = [own for own in all_springs if own[0].rule == "layered"]
-        springs, over = (layered, _OVER_LAYERS) if layered else (all_springs, _OVER_YIELD)
-        first, last = result.moment_from[:, at], result.moment_to[:, at]
-        shares = 0.5 - (first + last) / (where.across_load * where.clear**2)
-        inside = (shares > 0) & (shares < 1)
-        moment = np.where(inside, where.moment(first, last, shares), 0.0)
-        row = int(np.abs(moment).argmax()) if moment.size else 0
-        known = max(of_spring for _, of_spring in springs)
-        if moment.size and abs(moment[row]) > over * known:
-            known = max(known, *(_yield_moment(frame, spring) for spring, _ in springs))
-        if moment.size and abs(moment[row]) > over * known:
-            ratio = float(abs(moment[row]) / known) if known else np.inf
-            found.append((ratio, name, float(abs(moment[row])), float(shares[row])))
+    largest_at = zip(moments.argmax(axis=0).tolist(), moments.max(axis=0).tolist(), strict=True)
+    for i, (row, largest) in enumerate(largest_at):
+        springs = spans[i].springs
+        over = _OVER_LAYERS if springs[0].rule == "layered" else _OVER_YIELD
+        known = max(largest_of[column] for column in spans[i].columns)
+        if largest > over * known:
+            known = max(known, *(_yield_moment(frame, spring) for spring in springs))
+        if largest > over * known:
+            ratio = largest / known if known else np.inf
+            name = frame.parts.members[at[i]]
+            found.append((ratio, name, largest, float(shares[row, i])))
     if not found:
         return ""
     ratio, name, largest, place = max(found)

@@ -348,8 +348,8 @@ class Rows(_Channels):
         call = self.call
         by_force = self.summary["driven"] == "force"
         run = _core.cyclic(
-            self.structure._statement
-            + settings_of(None, self._is_column, collapse_drift=call.get("collapse_drift")),
+            self.structure._made,
+            settings_of(None, self._is_column, collapse_drift=call.get("collapse_drift")),
             by_force,
             call["force" if by_force else "displacement"],
             call.get("axial_load"),

@@ -95,7 +95,7 @@ class FrameModes(Tabular):
 
 
 def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
-    answer = _core.evaluate("modes", frame._statement, count=count)
+    answer = _core.evaluate("modes", made=frame._made, count=count)
     omega = answer.values[1:]
     x, y, rotation, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
     share = mass[0] / (frame.parts.mass or 1.0)  # none moves along x
@@ -134,7 +134,7 @@ def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
         count = _arguments.integer(count, "count")
     if isinstance(column, Frame):
         return _frame_modes(column, count)
-    answer = _core.evaluate("modes", checked_structure(column)._statement, count=count)
+    answer = _core.evaluate("modes", made=checked_structure(column)._made, count=count)
     if answer.text:
         warn(answer.text)
     stable_step, omega = float(answer.values[0]), answer.values[1:]
@@ -154,6 +154,6 @@ def matrices(column: Structure, form: Literal["symmetric", "paper"] = "symmetric
         M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
     """
     form = _arguments.choice(form, "form", ("symmetric", "paper"))
-    answer = _core.evaluate("matrices", checked_structure(column)._statement, paper=form == "paper")
+    answer = _core.evaluate("matrices", made=checked_structure(column)._made, paper=form == "paper")
     unknowns = tuple(answer.text.splitlines())
     return Matrices(unknowns, *(matrix.copy() for matrix in np.split(answer.rows, 4)))

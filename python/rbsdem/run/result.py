@@ -291,7 +291,9 @@ def cyclic(
     settings = settings_of(every, kept, collapse_drift=collapse_drift, max_seconds=max_seconds)
     state = None if initial is None else state_of(initial, "cyclic")
     wanted = _arguments.boolean(corners, "corners")
-    run = _core.cyclic(column._statement + settings, name == "force", values, load, state, wanted)
+    if isinstance(column, Frame):
+        settings = _core.joined([settings, *column._lost()])
+    run = _core.cyclic(column._made, settings, name == "force", values, load, state, wanted)
     call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
     call |= {"every": every, "collapse_drift": collapse_drift, "max_seconds": max_seconds}
     return _return(column, run, {"analysis": "static", "driven": name}, call)
@@ -423,9 +425,11 @@ def time_history(
     else:
         begin, state = (_NONE, False), state_of(initial, "time_history")
         kept_initial = _recorded_state(initial)
-    statement, thresholds = column._statement + settings, all_thresholds(column, kept)
+    thresholds = all_thresholds(column, kept)
     tell = partial(_tell, kind=LongRunWarning)
-    run, reached = _core.time_history(statement, times, loads, *begin, state, thresholds, tell)
+    run, reached = _core.time_history(
+        column._made, settings, times, loads, *begin, state, thresholds, tell
+    )
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 

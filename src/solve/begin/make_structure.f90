@@ -41,10 +41,10 @@ contains
       if (allocated(case%frame)) then
          allocate (frame)
          call make_frame(case, frame, before, error)
-         call move_alloc(frame, structure)
+         if (.not. allocated(error)) call move_alloc(frame, structure)
       else
          call make_column(case%column, column, error)
-         call move_alloc(column, structure)
+         if (.not. allocated(error)) call move_alloc(column, structure)
       end if
    end subroutine make_structure
 

@@ -33,7 +33,7 @@ module rbs_structure_frame_element
    implicit none
    private
 
-   public :: frame_element, find_tangent, find_forces, find_rates, motion_of_rest, unbalance
+   public :: frame_element, find_tangent, find_forces, end_forces, find_rates, motion_of_rest, unbalance
    public :: shared, joint_numbers
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
@@ -273,10 +273,7 @@ contains
       real(wp) :: force, left(3)
       integer :: i, j
 
-      s = 0.0_wp
-      do j = 1, m + n
-         s = s + rate(:, j)*(f(j) - dead*dead_force(j))
-      end do
+      s = forces_inside(m + n, rate, f, dead, dead_force)
       left = gap - motion_of_rest(e, s)
       do j = 1, m + n
          correction(j) = rate(1, j)*left(1) + rate(2, j)*left(2) + rate(3, j)*left(3)
@@ -293,8 +290,38 @@ contains
             correction(m + i) = correction(m + i) - opened(i, j)*force
          end do
       end do
-      s = s + (stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3))
+      s = s + forces_of(stiffness, gap)
    end subroutine find_forces
+
+   !> Forces of the ends alone.
+   pure function end_forces(m, stiffness, rate, gap, f, dead_force) result(s)
+      !> See `find_forces`, under all of the dead load
+      integer, intent(in) :: m
+      real(wp), intent(in) :: stiffness(3, 3), rate(3, m), gap(3), f(m), dead_force(m)
+      real(wp) :: s(3)
+
+      s = forces_inside(m, rate, f, 1.0_wp, dead_force) + forces_of(stiffness, gap)
+   end function end_forces
+
+   !> Forces of the ends that forces of springs without the dead load make where the ends are held.
+   pure function forces_inside(m, rate, f, dead, dead_force) result(s)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: rate(3, m), f(m), dead, dead_force(m)
+      real(wp) :: s(3)
+      integer :: j
+
+      s = 0.0_wp
+      do j = 1, m
+         s = s + rate(:, j)*(f(j) - dead*dead_force(j))
+      end do
+   end function forces_inside
+
+   pure function forces_of(stiffness, gap) result(s)
+      real(wp), intent(in) :: stiffness(3, 3), gap(3)
+      real(wp) :: s(3)
+
+      s = stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3)
+   end function forces_of
 
    !> Motion of the ends that forces of the ends make in the elastic rest.
    pure function motion_of_rest(e, s) result(q)

@@ -9,7 +9,7 @@ module rbs_structure_frame_frame
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_frame_element, only: frame_element
+   use rbs_structure_frame_element, only: frame_element, end_forces
    use rbs_structure_frame_element_balance, only: end_motion, motion_terms, compatibility_error, &
                                                   set_tangent, balance_ends, add_end_forces, &
                                                   add_second_order, add_band, add_geometric_band, &
@@ -410,12 +410,21 @@ contains
       !> Deformations and forces of all springs (springs)
       real(wp), intent(in), contiguous :: d(:), f(:)
       real(wp), intent(out) :: s(3)
-      real(wp) :: correction(size(f)), gap(3)
+      real(wp) :: gap(3)
 
-      associate (e => self%element(member), x => d(self%springs + 1:))
+      associate (e => self%element(member), x => d(self%springs + 1:), tangent => self%initial_tangent)
          gap = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
-         call balance_ends(e, size(f), self%tangent_numbers, gap, 1.0_wp, self%dead_force, d, f, &
-                           self%initial_tangent, s, correction)
+         if (e%layered) then
+            block
+               real(wp) :: correction(size(f))
+
+               call balance_ends(e, size(f), size(tangent), gap, 1.0_wp, self%dead_force, d, f, tangent, s, &
+                                 correction)
+            end block
+         else
+            s = end_forces(e%bending + e%opening, tangent(e%layout%stiffness:), tangent(e%layout%rate:), &
+                           gap, f(e%before + 1:), self%dead_force(e%before + 1:))
+         end if
       end associate
    end subroutine member_forces
 
