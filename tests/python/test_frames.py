@@ -1492,6 +1492,18 @@ def test_a_beam_and_a_column_that_yield_at_once():
         rbsdem.cyclic(portal(25.001e3), displacement=[0.05])
 
 
+@pytest.mark.parametrize("share", [0.9, 1.0, 2.0])
+def test_columns_beam_and_panels_that_yield_at_once(share):
+    """A portal on pins, hinges at the faces of its knees: V = 2 M_p/(clear height)."""
+    kind = FrameMember(E, A, INERTIA, yield_moment=100e3, rigid_end=0.25)
+    knee = 100e3 * 4.0 / 3.75
+    panel = Bilinear(4e7, share * knee / 4e7, 0.0)
+    frame = Frame.grid([4.0], [8.0], columns=kind, beams=kind, panel=panel, base="pinned")
+    push = rbsdem.pushover(frame, drift=0.05)
+    assert push.summary["status"] == "completed"
+    assert push.force[-1] == pytest.approx(min(share, 1.0) * 2 * knee / 4.0, rel=1e-9)
+
+
 def test_a_frame_that_buckles_under_its_dead_load():
     """A cantilever of one member under 1.1 times its critical load, which it is told."""
     critical = np.pi**2 * E * INERTIA / (4 * 4.0**2)

@@ -77,7 +77,7 @@ contains
             end if
             call pass()
             if (found) return
-            if (path%by_force .and. path%structure%tangent_numbers > 0) call let_one_unload()
+            if (path%structure%tangent_numbers > 0) call let_one_unload()
             if (found) cycle
             call report_no_line(path, target, error)
             return
