@@ -16,8 +16,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem.errors import AccuracyWarning
-from rbsdem.section.paper import PaperSection, paper_columns, paper_sections
-from rbsdem.section.paper_springs import SectionSprings
+from rbsdem.section.paper import PaperSection, SectionSprings, paper_columns, paper_sections
 
 # K_c, D_c, K_y, D_y, K_u, B_1 of the flexural spring; K_y, D_y, K_u of the shear spring.
 REFERENCE = {

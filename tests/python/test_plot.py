@@ -410,7 +410,7 @@ def test_shape_and_moments_of_a_frame(figures):
     bent = rbsdem.Frame.grid([3.0], [6.0], columns=rigid, beams=rigid, base="pinned")
     swayed = rbsdem.pushover(bent, drift=0.03, points=3)
     for member in bent.geometry.values():
-        points = frames.deformed(swayed, member, -1, 1.0, frames.spring_turns(swayed, -1))
+        points = frames.deformed(swayed, member, -1, 1.0, frames.spring_rotations(swayed, -1))
         straight = points[0] + np.linspace(0, 1, len(points))[:, None] * (points[-1] - points[0])
         assert points == pytest.approx(straight, abs=1e-9)
     with pytest.raises(rbsdem.InputError, match="row = 99"):

@@ -12,8 +12,7 @@ import pytest
 import rbsdem
 from rbsdem import InputError
 from rbsdem.errors import AccuracyWarning
-from rbsdem.section.paper import KEYS, PaperSection, paper_columns, paper_sections
-from rbsdem.section.paper_springs import SectionSprings
+from rbsdem.section.paper import KEYS, PaperSection, SectionSprings, paper_columns, paper_sections
 
 # By an independent program with the same laws and rules (not part of the project): K_c [N m/rad],
 # D_c [rad], K_y, D_y, K_u, B_1.

@@ -18,7 +18,7 @@ from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, Parameter, has_parameters
+from rbsdem.model.column import Column, Parameter
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.springs import Spring
 
@@ -259,7 +259,7 @@ class Parameters:
     """The parameters of one column: those that it offers, or otherwise the paths in it."""
 
     def __init__(self, column: Structure) -> None:
-        self.offered = has_parameters(column)
+        self.offered = isinstance(getattr(column, "parameters", None), Mapping)
         if not self.offered:
             checked_structure(column, "calibrate: ")
         self.column: Any = column  # with `parameters`, if it offers them

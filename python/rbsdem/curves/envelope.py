@@ -63,30 +63,6 @@ def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
     )
 
 
-def envelope_points(
-    displacement: ArrayLike, force: ArrayLike, side: int
-) -> tuple[Array, Array, Array]:
-    """Return the envelope of a cyclic curve to one side.
-
-    Parameters
-    ----------
-    displacement, force, side
-        As for `beyond`.
-
-    Returns
-    -------
-    place, displacement, force : ndarray, shape (k,)
-        Those of `beyond`; and of each half-cycle that comes back to the largest displacement so
-        far (within 5 %) without going beyond, the point of the largest force there.
-
-    Raises
-    ------
-    InputError
-        As `beyond`.
-    """
-    return _envelope(*_to_side(displacement, force, side), turning_points(displacement))
-
-
 def _envelope(x: Array, y: Array, turns: np.ndarray) -> tuple[Array, Array, Array]:
     places, xs, ys = ([part] for part in _beyond(x, y))
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))

@@ -18,7 +18,7 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
 from rbsdem.measured.tests import MeasuredTest, PeerTest, measured_test, read_peer
-from rbsdem.section.columns import CONCRETE_DENSITY
+from rbsdem.model.materials import CONCRETE_DENSITY
 
 # Spellings of one author.
 _AUTHORS = {"Petrovsky": "Petrovski"}

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, cast, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
@@ -176,23 +176,6 @@ class Parameter:
         if self.logarithmic:
             return value * math.log(self.high / self.low)
         return self.high - self.low
-
-
-@runtime_checkable
-class WithParameters(Protocol):
-    """A column made from few parameters, such as strengths, that a calibration may change."""
-
-    @property
-    def parameters(self) -> Mapping[str, Parameter]:
-        """The parameters, by name."""
-
-    def with_parameters(self, **values: float) -> Column:
-        """Return the column with other values; values that are not named are kept."""
-
-
-def has_parameters(column: Any) -> bool:
-    """Return whether a column offers its own parameters for a calibration."""
-    return isinstance(column, WithParameters) and isinstance(column.parameters, Mapping)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import count
@@ -565,7 +565,8 @@ class Frame:
             # Floors that are alike are stated once, as a case file has them.
             put(name, tuple(given.tolist() if np.ptp(given) else given[:1].tolist()))
         for name in ("columns", "beams"):
-            put(name, _cells(getattr(self, name), name))
+            cells = cells_of(getattr(self, name), name, _is_member, "a FrameMember")
+            put(name, cells or None)
         for name, kind in (("nodes", FrameNode), ("members", Member)):
             items = tuple(_arguments.several(getattr(self, name), f"frame: {name}", name))
             for item in items:
@@ -886,25 +887,29 @@ def _spring_of(text: str, place: float, stiffness: float) -> FrameSpring:
     return FrameSpring(member, group, rule, place, stiffness)
 
 
-def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember | None] | None:
-    """Return kinds by line (or bay) and storey."""
-    if given is None or isinstance(given, FrameMember):
-        return None if given is None else {(0, 0): given}
-    if not isinstance(given, Mapping):
-        raise InputError(
-            f"frame: {name} = {_arguments.shown(given)} must be a FrameMember, or a mapping from "
-            "pairs (line or bay, storey), 0 for all, to FrameMember"
-        )
-    found: dict[tuple[int, int], FrameMember | None] = {}
-    for pair, kind in given.items():
+def _is_member(cell: object) -> bool:
+    return isinstance(cell, FrameMember)
+
+
+def cells_of(
+    given: Any, name: str, is_cell: Callable[[Any], bool], kinds: str
+) -> dict[tuple[int, int], Any]:
+    """Return the cells of a grid by pairs of line or bay and storey, 0 for all, in their order."""
+    items = given.items() if isinstance(given, Mapping) else [((0, 0), given)]
+    found: dict[tuple[int, int], Any] = {}
+    for pair, one in () if given is None else items:
         if not (isinstance(pair, tuple) and len(pair) == 2):
             raise InputError(
                 f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
             )
+        if one is not None and not is_cell(one):
+            raise InputError(
+                f"frame: {name} = {_arguments.shown(one)} must be {kinds}, or a mapping from pairs "
+                "(line or bay, storey), 0 for all, to these"
+            )
         at, storey = (_arguments.integer(number, f"frame: {name}") for number in pair)
-        if kind is not None:
-            _arguments.instance(kind, f"frame: {name}", FrameMember)
-        found[at, storey] = kind
+        found.pop((at, storey), None)
+        found[at, storey] = one
     return found
 
 

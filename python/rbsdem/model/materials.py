@@ -18,6 +18,10 @@ Tension = Literal["ts", "bare", "zero"]
 """Tension laws of concrete: with tension stiffening beyond f_t; up to f_t only; no tension."""
 
 
+#: Density of reinforced concrete for the mass of a column [kg/m3].
+CONCRETE_DENSITY = 2400.0
+
+
 @dataclass(frozen=True)
 class Concrete:
     """Concrete; values that are not given follow from the strength.

@@ -527,7 +527,10 @@ class Rows(_Channels):
         InputError
             For another ending.
         """
-        save(self, path)
+        check_ending(path)
+        about, arrays = _parts(self)
+        with atomic_write(path) as file:
+            np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
 
     def save_state(self, path: str | os.PathLike[str]) -> None:
         """Write the state at the end as text, for ``initial=path`` and the executable.
@@ -542,7 +545,10 @@ class Rows(_Channels):
         InputError
             If the result has no state, as after a failure.
         """
-        save_state(self, path)
+        state = last_state(self)
+        head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"
+        with atomic_write(path) as file:
+            file.write((head + "\n".join(map(_text, state)) + "\n").encode())
 
     def __repr__(self) -> str:
         about, key = self.summary, "peak_base_shear" if self.dynamic else "peak_force"
@@ -653,26 +659,10 @@ def _read_state(path: str) -> Array:
     return state
 
 
-def save_state(result: HasEndState, path: str | os.PathLike[str]) -> None:
-    """Write a state as text: a head, then one number a line, whole or not at all."""
-    state = last_state(result)
-    head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"
-    with atomic_write(path) as file:
-        file.write((head + "\n".join(map(_text, state)) + "\n").encode())
-
-
 def _text(number: float) -> str:
     """Return a number as the executable writes it: all digits, three for the exponent."""
     digits, _, exponent = f"{number:.16E}".partition("E")
     return f"{digits}E{int(exponent):+04d}"
-
-
-def save(result: Any, path: str | os.PathLike[str]) -> None:
-    """Write a result as npz, whole or not at all."""
-    check_ending(path)
-    about, arrays = _parts(result)
-    with atomic_write(path) as file:
-        np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
 
 
 def check_ending(path: str | os.PathLike[str]) -> None:

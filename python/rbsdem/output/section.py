@@ -29,7 +29,7 @@ from rbsdem.output.style import (
 from rbsdem.section import shear
 from rbsdem.section.curvature import Diagram, Events, strains
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.paper_springs import SectionSprings
+from rbsdem.section.paper import SectionSprings
 from rbsdem.section.shear import ShearDiagram, ShearSpring
 from rbsdem.section.strength import Code, InteractionDiagram
 

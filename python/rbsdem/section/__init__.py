@@ -13,8 +13,8 @@ from rbsdem.section.curvature import strains as strains
 from rbsdem.section.layered import LayeredColumn as LayeredColumn
 from rbsdem.section.panel import flange_width as flange_width
 from rbsdem.section.panel import rigid_ends as rigid_ends
-from rbsdem.section.paper_springs import SectionSprings as SectionSprings
-from rbsdem.section.paper_springs import springs as springs
+from rbsdem.section.paper import SectionSprings as SectionSprings
+from rbsdem.section.paper import springs as springs
 from rbsdem.section.parameters import parameters as parameters
 from rbsdem.section.shear import shear_diagram as shear_diagram
 from rbsdem.section.strength import interaction as interaction

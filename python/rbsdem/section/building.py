@@ -271,27 +271,15 @@ def _masses(more: dict[str, Any], floors: Array, mass: str | None) -> None:
 
 
 def _cells(given: Any, name: str) -> dict[tuple[int, int], Any]:
-    """Return sections and kinds by line (or bay) and storey."""
-    if given is None:
-        return {}
-    items = given.items() if isinstance(given, Mapping) else [((0, 0), given)]
-    found: dict[tuple[int, int], Any] = {}
-    for pair, one in items:
-        if not (isinstance(pair, tuple) and len(pair) == 2):
-            raise InputError(
-                f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
-            )
-        halves = one if isinstance(one, (tuple, list)) and len(one) == 2 else (one,)
-        known = all(isinstance(part, Section) for part in halves)
-        if one is not None and not known and not isinstance(one, FrameMember):
-            raise InputError(
-                f"frame: {name} = {_arguments.shown(one)} must be a Section, a pair of them, a "
-                "FrameMember, or a mapping from pairs (line or bay, storey), 0 for all, to these"
-            )
-        at, storey = (_arguments.integer(number, f"frame: {name}") for number in pair)
-        found.pop((at, storey), None)
-        found[at, storey] = tuple(halves) if known and len(halves) == 2 else one
-    return found
+    """Return the cells of a grid; halves are a tuple."""
+    kinds = "a Section, a pair of them, a FrameMember"
+    cells = model.cells_of(given, name, _is_cell, kinds)
+    return {at: tuple(one) if isinstance(one, list) else one for at, one in cells.items()}
+
+
+def _is_cell(one: Any) -> bool:
+    halves = one if isinstance(one, (tuple, list)) and len(one) == 2 else (one,)
+    return isinstance(one, FrameMember) or all(isinstance(part, Section) for part in halves)
 
 
 def _node_loads(given: Any, lines: int) -> dict[tuple[int, int], float]:

@@ -9,11 +9,12 @@ from rbsdem import _arguments
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
+from rbsdem.model.materials import CONCRETE_DENSITY
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Spring, Takeda, unchecked
 from rbsdem.section.curvature import axial_load_note, column_length
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
-from rbsdem.section.paper_springs import springs
+from rbsdem.section.paper import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 from rbsdem.section.strength import axial_failure_law, nominal_moment, shear_failure_drift
 
@@ -33,9 +34,6 @@ _BARS_OF_BEAMS = {"isotropic_hardening": 0.0, "fatigue": 0.0}
 _LEAST_TIES = 1e-3
 #: Force at the nominal moment over strength in shear, up to which columns fail in flexure.
 _IN_FLEXURE = 0.6
-
-CONCRETE_DENSITY = 2400.0
-"""Density of reinforced concrete for the mass of a column [kg/m3]."""
 
 
 def model_name(model: str, model_parameters: ModelParameters | None = None) -> str:

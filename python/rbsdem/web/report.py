@@ -486,23 +486,8 @@ def _of_section(
     found = diagram(drawing, axial_load)
     lines = [found.idealise("caltrans"), found.idealise("priestley")]
     drawn = (partial(section.moment_curvature, found, idealise="caltrans"),)
-    rows = {
-        "method": [line.method for line in lines],
-        "moment_Nm": [line.yield_moment for line in lines],
-        "E_I_eff_Nm2": [line.stiffness for line in lines],
-        "phi_y_1/m": [line.yield_curvature for line in lines],
-        "phi_u_1/m": [line.ultimate.curvature for line in lines],
-        "mu_phi": [line.ductility for line in lines],
-    }
-    if length is not None:
-        columns = [line.capacity(length) for line in lines]
-        rows |= {
-            "l_p_m": [column.hinge_length for column in columns],
-            "displacement_at_yield_m": [column.yield_displacement for column in columns],
-            "capacity_m": [column.displacement for column in columns],
-            "ductility": [column.ductility for column in columns],
-        }
-    yield Sheet("Moment and curvature", str(found), drawn, data_frame(rows))
+    told = [found, *lines, *(line.capacity(length) for line in lines if length is not None)]
+    yield Sheet("Moment and curvature", "; ".join(map(str, told)), drawn)
     yield Sheet("Moment-curvature points", table=found.to_pandas(), beside=True)
     strengths = {code: interaction(drawing, code) for code in get_args(Code)}
     for code, strength in strengths.items():
@@ -551,13 +536,6 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
     ]
     if curves:
         yield Sheet("Fragility", "", (partial(many.fragilities, curves),), data_frame(rows))
-    motions, names = list(found.runs.motions), list(found.runs.columns)
-    collapses = {
-        "column": np.repeat(np.array(list(map(str, names))), len(motions)),
-        "motion": np.tile(np.array(list(map(str, motions))), len(names)),
-        "collapse_intensity_m/s2": found.collapse_intensity.ravel(),
-    }
-    yield Sheet("Collapse", table=data_frame(collapses))
     yield Sheet("Runs", table=found.to_pandas(), beside=True)
 
 

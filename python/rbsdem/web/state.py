@@ -22,7 +22,7 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Footing
-from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
+from rbsdem.model.materials import CONCRETE_DENSITY, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion, synthetic
@@ -264,7 +264,7 @@ def _footing_of(given: Mapping[str, Any], faults: Faults) -> Footing | None:
         values = {name: _arguments.number(given[name], name, above=0.0) for name in names}
         mass = _arguments.number(given["mass"], "mass", above=0.0) if given["mass"] else 0.0
         # A block of concrete with a square plan.
-        square = mass / (columns.CONCRETE_DENSITY * values["height"])
+        square = mass / (CONCRETE_DENSITY * values["height"])
         inertia = mass * (square + values["height"] ** 2) / 12.0
         sliding, rotation = Elastic(values["sliding"]), Elastic(values["rotation"])
         return Footing(sliding, rotation, None, mass, inertia, values["height"])
