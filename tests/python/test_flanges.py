@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -294,14 +295,14 @@ def test_rigid_ends_of_a_node():
     column = replace(
         RECTANGLE, width=0.4, depth=0.4, bars=[(0.15, 1e-3, STEEL), (-0.15, 1e-3, STEEL)]
     )
-    m_c = nominal_moment(column, 400e3)
     m_b = 0.5 * (nominal_moment(TEE, 0.0) + nominal_moment(TEE.mirrored, 0.0))
     assert rigid_ends(column, TEE, share=1) == (0.25, 0.2)
     assert rigid_ends(column, TEE, share=0.5) == (0.125, 0.1)
-    for columns, beams in ((2, 1), (1, 1), (2, 2), (1, 2)):
-        ratio = columns * m_c / (beams * m_b)
+    for columns, beams, area in itertools.product((1, 2), (1, 2), np.linspace(5e-4, 2e-3, 12)):
+        other = replace(column, bars=[(0.15, area, STEEL), (-0.15, area, STEEL)])
+        ratio = columns * nominal_moment(other, 400e3) / (beams * m_b)
         expected = (0.25, 0.0) if ratio > 1.2 else (0.0, 0.2) if ratio < 0.8 else (0.125, 0.1)
-        assert rigid_ends([column] * columns, [TEE] * beams, axial_load=400e3) == expected
+        assert rigid_ends([other] * columns, [TEE] * beams, axial_load=400e3) == expected
     for change, words in (
         ({"share": 1.5}, "share = 1.5"),
         ({"axial_load": 1e9}, "axial_load"),

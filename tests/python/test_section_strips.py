@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from samples import SPECIMEN
 
-from rbsdem import peer
+from rbsdem import CircularSection, Concrete, RectangularSection, peer
+from rbsdem.frames import TeeSection
 from rbsdem.section import hinge
 from rbsdem.section.hinge import Strip, Strips
 from rbsdem.springs import ConcreteSpring
@@ -113,3 +115,26 @@ def test_the_strain_at_the_peak_of_the_core(specimen):
     gain = core.f_peak / strips.core[0].area / (cover.f_peak / strips.cover[-1].area)
     assert gain > 1.02
     assert core.d_peak / cover.d_peak == pytest.approx(1 + 5 * (gain - 1), rel=1e-7)
+
+
+def polygon(corners: np.ndarray) -> float:
+    """Return the area inside of a closed line."""
+    x, y = corners.T
+    return 0.5 * abs(float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()))
+
+
+@pytest.mark.parametrize("wall", [None, 0.15])
+def test_outlines_enclose_the_concrete(wall):
+    """A rectangle and a tee to round-off, a circle as a polygon."""
+    concrete = Concrete(30e6)
+    tee = TeeSection(0.3, 0.5, concrete, flange_width=0.9, flange_thickness=0.15)
+    made = [
+        RectangularSection(0.4, 0.6, concrete, wall=wall),
+        CircularSection(0.6, concrete, wall=wall),
+    ]
+    for section in [*made, tee]:
+        found = polygon(section.outline()) - (
+            polygon(section.void()) if wall and section.wall else 0.0
+        )
+        near = 1e-3 if isinstance(section, CircularSection) else 1e-12
+        assert found == pytest.approx(section.gross_area, rel=near)

@@ -19,7 +19,7 @@ from reference_chain import Linear, chain
 
 import rbsdem
 from rbsdem import compare_methods
-from rbsdem.methods import ladder
+from rbsdem.methods import ladder, physics
 from rbsdem.methods.ladder import study_case
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.study import MethodStudy
@@ -281,6 +281,26 @@ def test_static_path_and_its_inverse(kinematics):
     assert turns.response_rms > 1e-2
     assert found.choice.row is not None
     assert not [e for e in found.physics.effects if "inertia" in e.part]
+
+
+def test_the_inverse_adds_what_was_lost_on_the_way():
+    """Of an elastic column: forces too large by 1e-6 move the top too far by as much."""
+    case = study_case(ELASTIC, None, {"displacement": CYCLES}, None, None)
+    there = case.run(ladder.Setting("static", "small", parts=1)).answer
+    more = dataclasses.replace(there, response=there.response * (1 + 1e-6))
+    back = physics._inverse(case, more, 1).answer
+    assert back.response == pytest.approx(there.response * (1 + 2e-6), rel=1e-9, abs=1e-6)
+
+
+def test_costs_are_those_of_the_first_hundred_intervals(monkeypatch):
+    """Also of a record that does not begin at time zero."""
+    lengths = {}
+    monkeypatch.setattr(
+        ladder, "_seconds", lambda case, setting: lengths.update({setting.method: case.time}) or 1.0
+    )
+    late = study_case(ELASTIC, 50.0 + TIME, {"ground_acceleration": MOTION}, None, None)
+    assert ladder.probe(late).implicit == pytest.approx(0.01)
+    assert lengths["newmark"] == pytest.approx(50.0 + TIME[:101])
 
 
 def test_falling_force_cannot_be_driven_back():
