@@ -222,24 +222,6 @@ def test_histories_of_files_and_long_ones_come_back_in_the_text(tmp_path, case_t
         assert np.array_equal(back.displacement, path)
 
 
-def test_random_cases_are_of_all_kinds():
-    cases = [random_case(np.random.default_rng(seed)) for seed in range(100, 300)]
-    assert {case.method for case in cases} == {"static", *METHODS}
-    settings = set().union(*(case.settings for case in cases))
-    assert settings == {
-        "every", "collapse_drift", "dt", "events", "tolerance", "rho_infinity", "allow_unstable"
-    }  # fmt: skip
-    for name in ("displacement", "force", "ground_acceleration", "vertical_acceleration"):
-        assert any(getattr(case, name) is not None for case in cases)
-    columns = [case.column for case in cases]
-    assert {column.kinematics for column in columns} == {"small", "pdelta", "finite"}
-    for name in ("axial_spring", "footing", "masses", "self_weight", "damping"):
-        assert any(getattr(column, name) for column in columns), name
-    damping = [column.damping for column in columns if column.damping]
-    for name in ("mass", "stiffness", "tangent", "modal"):
-        assert any(getattr(one, name) for one in damping), name
-
-
 def drawn_steel(rng: Rng) -> rbsdem.Steel:
     fy = near(rng, 4e8)
     return (

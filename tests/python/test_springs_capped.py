@@ -126,20 +126,6 @@ def test_reference_agrees(kind):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * scale(numbers))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_property_10_cycles_repeat_without_deterioration(kind):
-    """From the third on; the independent method knows cycles that grow."""
-    rng = np.random.default_rng(10)
-    for _ in range(300):
-        numbers = random_numbers(rng, kind, deteriorates=False)
-        top = numbers["d_y"] * rng.uniform(0.3, 10)
-        cycles = make(numbers).response(refined([top, -top] * 5, 16)).reshape(5, 32)
-        for later in (3, 4):
-            np.testing.assert_allclose(
-                cycles[later], cycles[2], rtol=0, atol=1e-11 * scale(numbers)
-            )
-
-
 def test_property_11_partial_unloading_leaves_no_trace():
     """Down toward zero force and up again, on one line: nothing deteriorates.
 
