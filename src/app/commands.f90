@@ -3,14 +3,12 @@ module rbs_app_commands
    use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_progress, only: terminal_progress, say
    use rbs_app_signals, only: keep_if_stopped
-   use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: next_line, to_text, text_buffer
    use rbs_case_key_list, only: keys_as_json, keys_as_table
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
-   use rbs_io_namelist, only: read_case
    use rbs_io_output_file, only: partial
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
@@ -19,11 +17,8 @@ module rbs_app_commands
    use rbs_output_summary, only: figure_type
    use rbs_solve_begin_make_structure, only: make_structure
    use rbs_solve_end_state, only: end_state
-   use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
-   use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
-   use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_structure, only: structure_type, finite
    use rbs_solve_time_effort, only: long_run_note
    use rbs_solve_time_march, only: initial_state
@@ -34,7 +29,7 @@ module rbs_app_commands
    implicit none
    private
 
-   public :: run_case, check_case, show_modes, show_keys
+   public :: run_case, check_case, show_keys
 
    !> Exit code of a run that ended because the user's criterion of collapse was met.
    integer, parameter :: column_collapsed = 3
@@ -332,80 +327,6 @@ contains
       end subroutine append_lines
 
    end subroutine check_case
-
-   !> rbsdem modes: frequencies, stable step, and the matrices if they are asked for.
-   subroutine show_modes(path, count, with_matrices, error)
-      character(len=*), intent(in) :: path
-      !> How many modes; 0: all
-      integer, intent(in) :: count
-      logical, intent(in) :: with_matrices
-      type(error_type), allocatable, intent(out) :: error
-      type(case_record) :: case
-      class(structure_type), allocatable :: structure
-      type(end_state) :: before
-      type(modes_type) :: modes
-      type(matrices_type) :: matrices
-      type(message_list) :: messages
-      logical :: understood
-      character(len=96) :: line
-      real(wp) :: period
-      integer, allocatable :: wanted
-      integer :: i
-
-      call read_case(path, case, messages, understood)
-      call messages%raise(error)
-      if (allocated(error)) return
-      call make_structure(case, structure, before, error)
-      if (allocated(error)) return
-      ! Not allocated, it is an argument that is left out.
-      if (count > 0) wanted = count
-      call find_modes(structure, modes, error, wanted)
-      if (.not. allocated(error) .and. with_matrices) then
-         call assemble_matrices(structure, .false., matrices, error)
-      end if
-      if (allocated(error)) return
-      call say('mode,frequency_Hz,period_s,omega_rad/s', error)
-      do i = 1, size(modes%omega)
-         ! A column with negligible stiffness has frequency zero and no period.
-         period = 0.0_wp
-         if (modes%omega(i) > tiny(1.0_wp)*1.0e3_wp) period = 2.0_wp*pi/modes%omega(i)
-         write (line, '(i0, 3(a, es22.16e2))') i, ',', modes%omega(i)/(2.0_wp*pi), ',', period, ',', &
-            modes%omega(i)
-         call say(trim(line), error)
-      end do
-      if (modes%warning /= '') call say('# note: '//trim(modes%warning), error)
-      write (line, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
-      call say(trim(line), error)
-      if (.not. with_matrices) return
-      call print_matrix('mass', matrices%unknown, matrices%mass, error)
-      call print_matrix('stiffness', matrices%unknown, matrices%stiffness, error)
-      call print_matrix('geometric', matrices%unknown, matrices%geometric, error)
-      call print_matrix('damping', matrices%unknown, matrices%damping, error)
-   end subroutine show_modes
-
-   !> A matrix as csv, in N, m, kg, s and rad.
-   subroutine print_matrix(name, unknown, a, error)
-      character(len=*), intent(in) :: name, unknown(:)
-      real(wp), intent(in) :: a(:, :)
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: line
-      character(len=24) :: number
-      integer :: i, j
-
-      line = name
-      do j = 1, size(unknown)
-         line = line//','//trim(unknown(j))
-      end do
-      call say(line, error)
-      do i = 1, size(unknown)
-         line = trim(unknown(i))
-         do j = 1, size(unknown)
-            write (number, '(es23.16e3)') a(i, j)
-            line = line//','//trim(adjustl(number))
-         end do
-         call say(line, error)
-      end do
-   end subroutine print_matrix
 
    !> rbsdem keys: the keys of a case.
    subroutine show_keys(name, as_json, error)

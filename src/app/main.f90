@@ -3,8 +3,9 @@ program rbsdem
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_command_line, only: command_type, read_command_line
-   use rbs_app_commands, only: run_case, check_case, show_modes, show_keys
+   use rbs_app_commands, only: run_case, check_case, show_keys
    use rbs_app_progress, only: say
+   use rbs_app_show_modes, only: show_modes
    use rbs_app_signals, only: prepare_process
    use rbs_base_error, only: error_type
    use rbs_base_text, only: next_line
@@ -69,7 +70,7 @@ contains
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(41) = [character(len=84) :: &
+      character(len=*), parameter :: text(28) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns and planar frames', &
          '', &
          'usage:', &
@@ -92,19 +93,6 @@ contains
          '  rbsdem verify                                   printed numbers of others', &
          '  rbsdem completion SHELL                         completion of the command line', &
          '', &
-         'CASE.nml may be -, which is standard input.', &
-         '', &
-         'options:', &
-         '  -o, --output FILE   file for the rows (default: the file of &output, or the', &
-         '                      name of the case with .csv); - is standard output', &
-         '  -q, --quiet         no summary and no progress', &
-         '', &
-         'exit code:', &
-         '  0  all went well', &
-         '  1  the analysis failed; the rows before are in FILE.partial', &
-         '  2  the input is wrong; all its errors are listed', &
-         '  3  the column collapsed: collapse_drift was reached; all rows are written', &
-         '', &
          'A case of a column has the groups &case, &units, &column, &damping, &shear,', &
          '&flexure, &axial_spring, &layer_spring, &layers, &loading, &analysis and &output,', &
          'one of a frame &frame, &floor, &member_kind, &column_of, &beam_of and others in', &
@@ -117,9 +105,10 @@ contains
          call print_topic(topic, error)
          return
       end if
-      do i = 1, size(text) - 1
+      do i = 1, size(text)
          call say(trim(text(i)), error)
       end do
+      call print_topic('run', error)
    end subroutine print_help
 
    !> The help of one command.
@@ -138,8 +127,11 @@ contains
          call say('                      name of the case with .csv); - is standard output', error)
          call say('  -q, --quiet         no summary, no notes and no progress', error)
          call say('', error)
-         call say('Exit code: 0 all went well, 1 the analysis failed (the rows before are in', error)
-         call say('FILE.partial), 2 the input is wrong, 3 collapse_drift was reached.', error)
+         call say('exit code:', error)
+         call say('  0  all went well', error)
+         call say('  1  the analysis failed; the rows before are in FILE.partial', error)
+         call say('  2  the input is wrong; all its errors are listed', error)
+         call say('  3  the column collapsed: collapse_drift was reached; all rows are written', error)
       case ('check')
          call say('usage: rbsdem check CASE.nml [--quiet] [--json]', error)
          call say('', error)

@@ -10,7 +10,7 @@ module rbs_base_check
    implicit none
    private
 
-   public :: is_given, check_finite, check_name, check_values
+   public :: is_given, check_finite, check_name, check_order, check_values
 
    !> Whether the user has given a number. Lists and texts that are not given are not allocated.
    interface is_given
@@ -75,6 +75,24 @@ contains
                            list_of(valid)//suggestion(word, valid))
       end if
    end subroutine check_name
+
+   !> Two numbers must be in order: 'OWNER: k_y = 3 must be below k_c = 2 (REASON)'.
+   subroutine check_order(owner, name, x, relation, limit_name, limit, reason, messages)
+      character(len=*), intent(in) :: owner, name
+      real(wp), intent(in) :: x, limit
+      !> 'must be below', 'must not be below', 'must be above' or 'must not be above'
+      character(len=*), intent(in) :: relation, limit_name
+      !> And remedy, with the signs before it
+      character(len=*), intent(in) :: reason
+      type(message_list), intent(inout) :: messages
+      logical :: below
+
+      below = x < limit
+      if (index(relation, 'above') > 0) below = x > limit
+      if (below .eqv. index(relation, 'not') == 0) return
+      call messages%add(owner//': '//name//' = '//to_text(x)//' '//relation//' '//limit_name//' = '// &
+                        to_text(limit)//reason)
+   end subroutine check_order
 
    !> Refuse values that are not finite, or whose products would not be finite.
    subroutine check_values(values, name, error)

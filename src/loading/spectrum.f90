@@ -4,6 +4,7 @@
 !> are found too, and those of the free vibration after the end of the motion.
 module rbs_loading_spectrum
    use rbs_base_constants, only: pi
+   use rbs_base_cubic, only: largest_of
    use rbs_base_kinds, only: wp
    implicit none
    private
@@ -101,26 +102,13 @@ contains
       peak(1) = max(peak(1), abs(z(1)))
       peak(2) = max(peak(2), abs(z(2)))
       peak(3) = max(peak(3), abs(total1))
-      if (old(2)*z(2) < 0.0_wp) peak(1) = max(peak(1), turning_value(old(1), z(1), old(2), z(2)))
-      if (x0*x1 < 0.0_wp) peak(2) = max(peak(2), turning_value(old(2), z(2), x0, x1))
-      if (slope0*slope1 < 0.0_wp) peak(3) = max(peak(3), turning_value(total0, total1, slope0, slope1))
+      ! Where a rate changes its sign the peak is within the step.
+      if (old(2)*z(2) < 0.0_wp) peak(1) = max(peak(1), abs(largest_of([old(1), z(1), old(2), z(2)])))
+      if (x0*x1 < 0.0_wp) peak(2) = max(peak(2), abs(largest_of([old(2), z(2), x0, x1])))
+      if (slope0*slope1 < 0.0_wp) then
+         peak(3) = max(peak(3), abs(largest_of([total0, total1, slope0, slope1])))
+      end if
    end subroutine advance
-
-   !> Absolute value where the cubic through two values with two slopes of opposite sign turns.
-   pure real(wp) function turning_value(f0, f1, d0, d1) result(value)
-      real(wp), intent(in) :: f0, f1, d0, d1
-      real(wp) :: a, b, root, t
-
-      ! f = f0 + d0 t + b t^2 + a t^3; its slope changes sign once in 0 < t < 1.
-      a = 2.0_wp*(f0 - f1) + d0 + d1
-      b = 3.0_wp*(f1 - f0) - 2.0_wp*d0 - d1
-      root = -(b + sign(sqrt(max(b**2 - 3.0_wp*a*d0, 0.0_wp)), b))
-      t = -1.0_wp
-      if (abs(root) > 0.0_wp) t = d0/root
-      if (.not. (t >= 0.0_wp .and. t <= 1.0_wp)) t = root/merge(3.0_wp*a, 1.0_wp, abs(a) > 0.0_wp)
-      t = min(max(t, 0.0_wp), 1.0_wp)
-      value = abs(f0 + t*(d0 + t*(b + t*a)))
-   end function turning_value
 
    !> The step by the series of the exponential, which has no differences of large numbers and holds for any
    !> damping.

@@ -11,7 +11,7 @@ module rbs_section_concrete_law
    use rbs_base_keys, only: above_zero, bound_type, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_check, only: is_given
+   use rbs_base_check, only: check_order, is_given
    implicit none
    private
 
@@ -209,10 +209,8 @@ contains
 
       call self%check('concrete', messages, sound)
       if (.not. sound) return
-      if (is_given(self%ft) .and. .not. self%ft < self%fc) then
-         call messages%add('concrete: ft = '//to_text(self%ft)//' Pa must be below fc = '// &
-                           to_text(self%fc)//' Pa')
-      end if
+      if (is_given(self%ft)) call check_order('concrete', 'ft', self%ft, 'must be below', 'fc', self%fc, &
+                                              ' Pa', messages)
       law = plain_concrete(self%fc, self%ft, self%ec, unset)
       if (is_given(self%eps0)) then
          if (law%ec*self%eps0 < 1.02_wp*self%fc) then

@@ -4,13 +4,12 @@
 !> stress beyond, as the bar is broken (Response-2000, manual table 2-2: quadratic with zero slope at its
 !> maximum).
 module rbs_section_steel_law
-   use rbs_base_check, only: is_given
+   use rbs_base_check, only: check_order, is_given
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: above_zero, any_number, bound_type
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
    implicit none
    private
 
@@ -106,18 +105,10 @@ contains
       call self%check('steel', messages, sound)
       if (.not. sound) return
       law = self%law()
-      if (law%fu < law%fy) then
-         call messages%add('steel: fu = '//to_text(law%fu)//' Pa must not be below fy = '// &
-                           to_text(law%fy)//' Pa')
-      end if
-      if (law%eps_sh < steel_yield_strain(law)) then
-         call messages%add('steel: eps_sh = '//to_text(law%eps_sh)//' must not be below the yield '// &
-                           'strain fy/es = '//to_text(steel_yield_strain(law)))
-      end if
-      if (law%eps_u <= law%eps_sh) then
-         call messages%add('steel: eps_u = '//to_text(law%eps_u)//' must be above eps_sh = '// &
-                           to_text(law%eps_sh))
-      end if
+      call check_order('steel', 'fu', law%fu, 'must not be below', 'fy', law%fy, ' Pa', messages)
+      call check_order('steel', 'eps_sh', law%eps_sh, 'must not be below', 'the yield strain fy/es', &
+                       steel_yield_strain(law), '', messages)
+      call check_order('steel', 'eps_u', law%eps_u, 'must be above', 'eps_sh', law%eps_sh, '', messages)
    end subroutine validate
 
    !> The law.

@@ -17,7 +17,7 @@
 !>
 !> All values are positive on both sides.
 module rbs_hysteresis_rules_backbone
-   use rbs_base_check, only: is_given
+   use rbs_base_check, only: check_order, is_given
    use rbs_base_constants, only: unbounded, unset
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
@@ -296,43 +296,32 @@ contains
       type(message_list), intent(inout) :: messages
 
       call check_cracking(self, name, suffix, messages)
-      if (self%d_cap < self%d_y) then
-         call report('d_cap', self%d_cap, 'must not be below', 'd_y', self%d_y, 'the cap comes after yield')
+      call require('d_cap', self%d_cap, 'must not be below', 'd_y', self%d_y, 'the cap comes after yield')
+      call require('f_cap', self%f_cap, 'must not be below', 'f_y', self%f_y, &
+                   'put the yield point at the cap if the force falls from there')
+      if (self%f_cap > self%f_y .and. .not. self%d_cap > self%d_y) then
+         call require('d_cap', self%d_cap, 'must be above', 'd_y', self%d_y, &
+                      'the force rises from yield to the cap')
+      else if ((self%f_cap - self%f_y)*(self%d_y - self%d_c) > &
+               (self%f_y - self%f_c)*(self%d_cap - self%d_y)*(1.0_wp + round_off)) then
+         call messages%add(name//': f_cap'//suffix//' = '//to_text(self%f_cap)//' is too far above f_y'// &
+                           suffix//' = '//to_text(self%f_y)//' (the slope to the cap must not be above '// &
+                           'that to yield: yielding softens)')
       end if
-      if (self%f_cap < self%f_y) then
-         call report('f_cap', self%f_cap, 'must not be below', 'f_y', self%f_y, &
-                    'put the yield point at the cap if the force falls from there')
-      else if (self%d_cap > self%d_y) then
-         if ((self%f_cap - self%f_y)*(self%d_y - self%d_c) > &
-             (self%f_y - self%f_c)*(self%d_cap - self%d_y)*(1.0_wp + round_off)) then
-            call report('f_cap', self%f_cap, 'is too far above', 'f_y', self%f_y, &
-                       'the slope to the cap must not be above that to yield: yielding softens')
-         end if
-      else if (self%f_cap > self%f_y) then
-         call report('d_cap', self%d_cap, 'must be above', 'd_y', self%d_y, &
-                    'the force rises from yield to the cap')
-      end if
-      if (self%f_res >= self%f_y) then
-         call report('f_res', self%f_res, 'must be below', 'f_y', self%f_y, &
-                    'it is what softening leaves of the strength')
-      end if
-      if (is_given(self%d_u)) then
-         if (self%d_u < self%d_cap) then
-            call report('d_u', self%d_u, 'must not be below', 'd_cap', self%d_cap, &
-                       'rupture comes after the cap')
-         end if
-      end if
+      call require('f_res', self%f_res, 'must be below', 'f_y', self%f_y, &
+                   'it is what softening leaves of the strength')
+      if (is_given(self%d_u)) call require('d_u', self%d_u, 'must not be below', 'd_cap', self%d_cap, &
+                                           'rupture comes after the cap')
 
    contains
 
-      !> 'name: d_cap = 1 must not be below d_y = 2 (the reason)'
-      subroutine report(number, value, relation, other, limit, reason)
+      subroutine require(number, value, relation, other, limit, reason)
          character(len=*), intent(in) :: number, relation, other, reason
          real(wp), intent(in) :: value, limit
 
-         call messages%add(name//': '//number//suffix//' = '//to_text(value)//' '//relation//' '//other// &
-                           suffix//' = '//to_text(limit)//' ('//reason//')')
-      end subroutine report
+         call check_order(name, number//suffix, value, relation, other//suffix, limit, ' ('//reason//')', &
+                          messages)
+      end subroutine require
    end subroutine check
 
    !> The cracking point needs both values or none; it must come before yield, on a stiffer line.

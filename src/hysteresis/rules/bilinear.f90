@@ -3,11 +3,11 @@
 !> Between two bounding lines F = k_post D + q and F = k_post D - q, q = (k - k_post) d_y, the spring is
 !> elastic with slope k; the elastic range is 2 d_y wide and travels with the plastic deformation.
 module rbs_hysteresis_rules_bilinear
+   use rbs_base_check, only: check_order
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
@@ -51,10 +51,8 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
-      if (self%k_post >= self%k) then
-         call messages%add(name//': k_post = '//to_text(self%k_post)//' must be below k = '// &
-                           to_text(self%k)//'; use an elastic spring for one that does not yield')
-      end if
+      call check_order(name, 'k_post', self%k_post, 'must be below', 'k', self%k, &
+                       '; use an elastic spring for one that does not yield', messages)
       call check_product(self%k, self%d_y, name, 'k d_y', messages)
    end subroutine check_relations
 

@@ -15,13 +15,13 @@
 !> the spring moves with its initial stiffness, as a block that rubs: a crack that closes and opens again
 !> takes up energy, whether the crack opens or not.
 module rbs_hysteresis_rules_concrete
+   use rbs_base_check, only: check_order
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: above_zero, not_negative, share_below_one, force, deformation, &
                             stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
@@ -130,14 +130,10 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
-      if (self%f_peak >= self%k*self%d_peak) then
-         call messages%add(name//': f_peak = '//to_text(self%f_peak)//' must be below k d_peak = '// &
-                           to_text(self%k*self%d_peak)//' (the curve bends towards its peak)')
-      end if
-      if (self%f_res > self%f_peak) then
-         call messages%add(name//': f_res = '//to_text(self%f_res)//' must not be above f_peak = '// &
-                           to_text(self%f_peak)//' (it is what is left of it)')
-      end if
+      call check_order(name, 'f_peak', self%f_peak, 'must be below', 'k d_peak', self%k*self%d_peak, &
+                       ' (the curve bends towards its peak)', messages)
+      call check_order(name, 'f_res', self%f_res, 'must not be above', 'f_peak', self%f_peak, &
+                       ' (it is what is left of it)', messages)
       call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
    end subroutine check_relations
 

@@ -7,7 +7,7 @@
 !> its element can: small reversals have small effects, and closed loops never create energy. Plastic
 !> deformation inside the reach may reduce the strength through the factor w (wear).
 module rbs_hysteresis_rules_steel
-   use rbs_base_check, only: is_given
+   use rbs_base_check, only: check_order, is_given
    use rbs_base_constants, only: no_stiffness, unbounded, unset
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
@@ -127,15 +127,10 @@ contains
       integer :: before
 
       before = messages%count
-      if (self%k_post >= self%k) then
-         call messages%add(name//': k_post = '//to_text(self%k_post)//' must be below k = '// &
-                           to_text(self%k)//'; use an elastic spring for one that does not yield')
-      end if
+      call check_order(name, 'k_post', self%k_post, 'must be below', 'k', self%k, &
+                       '; use an elastic spring for one that does not yield', messages)
       if (is_given(self%f_u)) then
-         if (self%f_u < self%f_y) then
-            call messages%add(name//': f_u = '//to_text(self%f_u)//' must not be below f_y = '// &
-                              to_text(self%f_y))
-         end if
+         call check_order(name, 'f_u', self%f_u, 'must not be below', 'f_y', self%f_y, '', messages)
          if (.not. self%k_post > 0.0_wp) then
             call messages%add(name//': f_u = '//to_text(self%f_u)//' is not reached with k_post = 0; '// &
                               'remove f_u or give k_post above zero')

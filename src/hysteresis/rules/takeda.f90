@@ -14,12 +14,12 @@
 !> the secant to the zero crossing of the excursion: below it a loop would create energy.
 module rbs_hysteresis_rules_takeda
    use, intrinsic :: iso_fortran_env, only: int64
+   use rbs_base_check, only: check_order
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_base_text, only: to_text
    use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
@@ -124,18 +124,12 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
-      if (self%d_y <= self%d_c) then
-         call messages%add(name//': d_y = '//to_text(self%d_y)//' must be above d_c = '// &
-                           to_text(self%d_c)//' (yield comes after cracking)')
-      end if
-      if (self%k_y >= self%k_c) then
-         call messages%add(name//': k_y = '//to_text(self%k_y)//' must be below k_c = '// &
-                           to_text(self%k_c)//' (cracking softens)')
-      end if
-      if (self%k_u > self%k_y) then
-         call messages%add(name//': k_u = '//to_text(self%k_u)//' must not be above k_y = '// &
-                           to_text(self%k_y)//' (yielding softens)')
-      end if
+      call check_order(name, 'd_y', self%d_y, 'must be above', 'd_c', self%d_c, &
+                       ' (yield comes after cracking)', messages)
+      call check_order(name, 'k_y', self%k_y, 'must be below', 'k_c', self%k_c, ' (cracking softens)', &
+                       messages)
+      call check_order(name, 'k_u', self%k_u, 'must not be above', 'k_y', self%k_y, ' (yielding softens)', &
+                       messages)
       call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
    end subroutine check_relations
 

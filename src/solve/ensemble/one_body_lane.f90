@@ -112,6 +112,7 @@ contains
       integer :: i
 
       call lane_to_body(x, l, damping, body)
+      ! A trial: slip, rotation, work of the residual, acceleration of the ground.
       body%ground = x%trial(l, 4)
       body%work = x%trial(l, 3)
       do i = 1, 2

@@ -109,6 +109,8 @@ contains
       end do
    end subroutine check_members
 
+   !> Apply the dead load to the frame without load, along a straight path from nothing to all of it. The end
+   !> is the state in which analyses begin, and gives the compression of the members.
    subroutine load_once(frame, state, error)
       type(frame_type), intent(inout), target :: frame
       type(end_state), intent(out) :: state

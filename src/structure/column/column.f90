@@ -364,19 +364,20 @@ contains
    pure real(wp) function angular_momentum(self, d, v) result(momentum)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp) :: top, turning, centroid
+      !> Rates: of the rotation of a body, and along x of its top and its centroid
+      real(wp) :: rotation, top, centroid
       integer :: i, n
 
       n = size(d)/self%kinds
       momentum = 0.0_wp
       top = 0.0_wp
-      turning = 0.0_wp
+      rotation = 0.0_wp
       do i = 1, n
-         turning = turning + v(n + i)
-         centroid = top + v(i) + self%lower(i)*turning
-         top = centroid + self%upper(i)*turning
+         rotation = rotation + v(n + i)
+         centroid = top + v(i) + self%lower(i)*rotation
+         top = centroid + self%upper(i)*rotation
          momentum = momentum + self%mass(i)*centroid*(self%joint_height(i) + self%lower(i)) &
-                    + self%inertia(i)*turning
+                    + self%inertia(i)*rotation
       end do
    end function angular_momentum
 

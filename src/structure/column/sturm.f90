@@ -82,6 +82,8 @@ contains
                      self%sliding, s, axial, self%joint, below)
    end function factor
 
+   !> Eliminate slip and rotation of the joints from the top down, see the head of this module. Two shifts by
+   !> `arm` move T from the top of a body over its centroid, where its inertia is added, to its bottom.
    pure subroutine eliminate(n, held, k, mass, lower, upper, turning, sliding, s, axial, joint, below)
       integer, intent(in) :: n
       logical, intent(in) :: held

@@ -31,8 +31,9 @@ module rbs_structure_frame_frame
       channel_type('node_rotation', 'rad'), channel_type('member_axial', 'N'), &
       channel_type('moment_from', 'N m'), channel_type('moment_to', 'N m'), channel_type('slip', 'm'), &
       channel_type('shear', 'N'), channel_type('rotation', 'rad'), channel_type('moment', 'N m'), &
-      channel_type('opening', 'm'), channel_type('axial_force', 'N'), channel_type('node_acceleration', 'm/s2'), &
-      channel_type('ground_acceleration', 'm/s2'), channel_type('lost', '')]
+      channel_type('opening', 'm'), channel_type('axial_force', 'N'), &
+      channel_type('node_acceleration', 'm/s2'), channel_type('ground_acceleration', 'm/s2'), &
+      channel_type('lost', '')]
 
    !> Share of the terms of all elements that counts as those of any.
    real(wp), parameter :: of_all = 0.01_wp
