@@ -6,6 +6,7 @@ module rbs_hysteresis_springs
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_journal, only: journal_type
+   use rbs_hysteresis_layer_joints, only: layer_joints
    use rbs_hysteresis_layered_fibre_path, only: go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_layered_layered_joint, only: start_under
@@ -62,11 +63,15 @@ module rbs_hysteresis_springs
       !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
       !> [N], and its centre of stiffness e = -dM/dN [m]
       real(wp), allocatable :: target_axial_load(:), reference_axial_load(:), centre(:)
+      !> Joints whose layers are springs
+      type(layer_joints) :: joints
    contains
       procedure :: create
       procedure :: restart
       procedure :: force
       procedure :: forces
+      procedure :: find_forces
+      procedure :: find_resistance
       procedure :: end_toward
       procedure :: advance_to
       procedure :: advance_on_branch
@@ -74,6 +79,7 @@ module rbs_hysteresis_springs
       procedure :: arrive
       procedure :: load_to
       procedure :: line_of
+      procedure :: set_stiffness
       procedure :: put
       procedure :: release
       procedure :: is_removed
@@ -92,7 +98,7 @@ module rbs_hysteresis_springs
 contains
 
    !> Virgin springs with rules that have been made.
-   subroutine create(self, rules, work_source, axial_load, coordinates)
+   subroutine create(self, rules, work_source, axial_load, coordinates, joints)
       class(spring_array), intent(out) :: self
       !> They stay where they are, and must be there as long as the springs
       type(spring_rules), intent(in), target :: rules
@@ -102,10 +108,13 @@ contains
       real(wp), intent(in) :: axial_load(:)
       !> Numbers that `d` has, as many as springs or more
       integer, intent(in) :: coordinates
+      !> Joints whose layers are springs
+      type(layer_joints), intent(in), optional :: joints
       type(segment) :: line
       integer :: i, n, before
 
       n = size(rules%of)
+      if (present(joints)) self%joints = joints
       self%count = n
       self%rules => rules
       allocate (self%slot(n), self%unload_on_reversal(n), self%includes_lower_end(n), &
@@ -135,6 +144,7 @@ contains
             self%layered = [self%layered, i]
          end select
       end do
+      call sum_up_joints(self)
    end subroutine create
 
    !> The same springs, virgin once more; their axial loads do not vary.
@@ -153,6 +163,7 @@ contains
          call start_under(self%slot(i)%rule, axial_load(i), self%slot(i)%memory, line)
          call put_line(self, i, line)
       end do
+      call sum_up_joints(self)
    end subroutine restart
 
    !> Force of one spring at its present deformation [N or N m].
@@ -163,15 +174,98 @@ contains
       force = self%f0(i) + self%k(i)*(self%d(i) - self%d0(i))
    end function force
 
-   !> Forces of all springs at deformations on their present lines (count).
+   !> Forces of all springs in a position on their present lines (count), see `find_forces`.
    pure function forces(self, d) result(f)
       class(spring_array), intent(in) :: self
-      !> They come first
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: f(self%count)
 
-      f = self%f0 + self%k*(d(:self%count) - self%d0)
+      call self%find_forces(d, f)
    end function forces
+
+   !> Forces in a position on the present lines; of a joint of layers axial force and moment, in the places of
+   !> its first two layers; the other layers have none.
+   pure subroutine find_forces(self, d, f)
+      class(spring_array), intent(in) :: self
+      !> Deformations come first
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      integer :: i, j
+
+      if (self%joints%count == 0) then
+         call on_lines(self%count, self%d0, self%f0, self%k, d, f)
+         return
+      end if
+      do j = 1, size(self%joints%others)
+         i = self%joints%others(j)
+         f(i) = self%f0(i) + self%k(i)*(d(i) - self%d0(i))
+      end do
+      call self%joints%forces(d, f)
+   end subroutine find_forces
+
+   pure subroutine on_lines(n, d0, f0, k, d, f)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: d0(n), f0(n), k(n), d(n)
+      real(wp), intent(out) :: f(n)
+
+      f = f0 + k*(d - d0)
+   end subroutine on_lines
+
+   !> Forces by a change of the position, as those of `find_forces`, with a stiffness of each spring.
+   pure subroutine find_resistance(self, k, change, f)
+      class(spring_array), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:), change(:)
+      real(wp), intent(out), contiguous :: f(:)
+      type(layer_joints) :: joints
+      integer :: j
+
+      f = k*change(:self%count)
+      if (self%joints%count == 0) return
+      joints = self%joints
+      joints%anchor = 0.0_wp
+      do j = 1, joints%count
+         f(joints%first(j):joints%last(j)) = 0.0_wp
+         call joints%sum_up(j, f, f, k)
+      end do
+      call joints%forces(change, f)
+   end subroutine find_resistance
+
+   !> Find the sums of the joints whose layers have changed their lines.
+   pure subroutine sum_up_joints(self)
+      type(spring_array), intent(inout) :: self
+      integer :: j
+
+      do j = 1, self%joints%count
+         if (self%joints%is_changed(j)) call sum_up_joint(self, j)
+      end do
+   end subroutine sum_up_joints
+
+   pure subroutine sum_up_joint(self, joint)
+      type(spring_array), intent(inout) :: self
+      integer, intent(in) :: joint
+
+      self%joints%anchor(:, joint) = self%joints%motion(joint, self%d)
+      call self%joints%sum_up(joint, self%d0, self%f0, self%k)
+   end subroutine sum_up_joint
+
+   !> The same of the joint of a spring.
+   pure subroutine sum_up_joint_of(self, i)
+      type(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+
+      if (self%joints%count == 0) return
+      if (self%joints%of(i) > 0) call sum_up_joint(self, self%joints%of(i))
+   end subroutine sum_up_joint_of
+
+   !> Let the line of a spring have another stiffness, for a virtual motion.
+   pure subroutine set_stiffness(self, i, k)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: k
+
+      self%k(i) = k
+      call sum_up_joint_of(self, i)
+   end subroutine set_stiffness
 
    !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of one that unloads on
    !> reversal is the present deformation.
@@ -264,6 +358,7 @@ contains
       ! A branch that unloads on reversal starts at the present deformation, to the last bit.
       if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
       if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
+      call sum_up_joint_of(self, i)
    end subroutine leave
 
    !> Put a spring exactly on the end of its line in a direction; from an open end it takes the next line.
@@ -330,6 +425,7 @@ contains
       class(spring_array), intent(inout) :: self
 
       call go_back(self)
+      call sum_up_joints(self)
    end subroutine restore
 
    !> Move every spring from the mark to new deformations. Of those that pass through the branches of
@@ -357,6 +453,7 @@ contains
       end do
       if (self%stuck) return
       call advance_all(self, d)
+      call sum_up_joints(self)
    end subroutine retry
 
    !> Put a spring where it entered its present branch.
@@ -432,6 +529,10 @@ contains
          call self%slot(i)%memory%serialize(stream)
       end do
       self%version = modulo(self%version + 1, huge(1))
+      if (self%joints%count > 0) call stream%item(self%joints%anchor)
+      do i = 1, self%joints%count
+         call self%joints%sum_up(i, self%d0, self%f0, self%k)
+      end do
       if (.not. (self%axial_load_varies .and. stream%restoring)) return
       call self%fit_planes()
       self%target_axial_load(:) = self%reference_axial_load
@@ -469,6 +570,8 @@ contains
       self%unload_on_reversal(i) = line%unload_on_reversal
       self%first(i) = first_on(line)
       self%last(i) = last_on(line)
+      if (self%joints%count == 0) return
+      if (self%joints%of(i) > 0) self%joints%is_changed(self%joints%of(i)) = .true.
    end subroutine put_line
 
    !> Put a spring on a line that was found elsewhere, at d.
@@ -484,6 +587,7 @@ contains
       self%work(i) = work
       if (line%unload_on_reversal > 0) self%first(i) = d
       if (line%unload_on_reversal < 0) self%last(i) = d
+      call sum_up_joint_of(self, i)
    end subroutine put
 
    !> Let a spring have a constant force from now on.
@@ -529,16 +633,28 @@ contains
       end if
       ! Springs that have arrived do not move any more.
       call advance_all(self, d)
+      call sum_up_joints(self)
    end subroutine move_all
 
-   !> Whether all springs can move to new deformations on their present lines, within the bounds of all
-   !> meaning.
-   pure logical function stay_on_lines(self, d)
-      class(spring_array), intent(in) :: self
-      !> New deformations (count) [m or rad]
+   !> Whether all springs can go to a new position on their present lines, within the bounds of all meaning.
+   logical function stay_on_lines(self, d)
+      class(spring_array), intent(inout) :: self
+      !> Deformations of layers follow from those of their joints
       real(wp), intent(in), contiguous :: d(:)
+      integer :: i, j
 
-      stay_on_lines = are_within(self%count, d, self%first, self%last) .and. .not. self%axial_load_varies
+      stay_on_lines = .not. self%axial_load_varies
+      if (.not. stay_on_lines) return
+      if (self%joints%count == 0) then
+         stay_on_lines = are_within(self%count, d, self%first, self%last)
+         return
+      end if
+      do j = 1, size(self%joints%others)
+         i = self%joints%others(j)
+         stay_on_lines = d(i) <= self%last(i) .and. d(i) >= self%first(i) .and. abs(d(i)) < out_of_bounds
+         if (.not. stay_on_lines) return
+      end do
+      call self%joints%stay_on_lines(d, self%first, self%last, self%unload_on_reversal, stay_on_lines)
    end function stay_on_lines
 
    !> Move every spring to a deformation on its present line.

@@ -9,6 +9,7 @@ module rbs_structure_structure
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_layer_joints, only: layer_joints
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
@@ -54,7 +55,7 @@ module rbs_structure_structure
       !> that are held count too
       integer :: unknowns = 0, half_width = 0, n = 0
       !> Length of a position: deformations of the springs, and behind them the unknowns where these do not
-      !> follow from the deformations. Both move with the same step
+      !> follow from the deformations, openings and rotations of joints of layers. All move with the same step
       integer :: coordinates = 0
       !> `small`, `pdelta` or `finite`; number of storeys whose drifts are known
       integer :: kinematics = small, storeys = 0
@@ -82,6 +83,8 @@ module rbs_structure_structure
       type(spring_place), allocatable :: place(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
+      !> Joints whose layers are springs
+      type(layer_joints) :: joints
       !> Displacement of the top per coordinate, for small rotations, which static paths control (coordinates)
       real(wp), allocatable :: arm(:)
       !> The same per unknown (unknowns)
@@ -677,7 +680,7 @@ contains
 
       work_source(1, :) = self%place%work_source
       work_source(2, :) = self%place%last_work_source
-      call springs%create(self%rules, work_source, axial_force, self%coordinates)
+      call springs%create(self%rules, work_source, axial_force, self%coordinates, self%joints)
    end subroutine create_springs
 
    !> Add the inertia of the moving ground.

@@ -278,7 +278,9 @@ contains
          end do
          found = found .and. next == 0
          if (found) found = any(path%rate(:m)*path%way_in(:m) > 0.0_wp)
-         where (is_back) path%springs%k(:m) = k
+         do i = 1, m
+            if (is_back(i)) call path%springs%set_stiffness(i, k(i))
+         end do
          if (found) exit
          call path%springs%restore()
       end do
@@ -338,10 +340,10 @@ contains
          associate (springs => path%springs, came => path%arrived(i))
             if (.not. is_back(i) .and. heading == -came .and. path%one_way(i)) then
                is_back(i) = .true.
-               springs%k(i) = path%k_in(i)
+               call springs%set_stiffness(i, path%k_in(i))
             else if (is_back(i)) then
                is_back(i) = .false.
-               springs%k(i) = k(i)
+               call springs%set_stiffness(i, k(i))
                if (heading == came) return
                call springs%leave(i, heading)
                crossed(i) = heading
@@ -351,7 +353,7 @@ contains
                if (heading == came .and. path%one_way(i)) then
                   is_back(i) = .true.
                   k(i) = springs%k(i)
-                  springs%k(i) = path%k_in(i)
+                  call springs%set_stiffness(i, path%k_in(i))
                else
                   edge(i) = at
                end if

@@ -346,6 +346,7 @@ contains
          if (self%of_dead_load .and. shares) found = found .and. maxval(abs(self%inner_load)) < falls
          if (.not. found) return
          rate = self%moved(:, 1)
+         call springs%joints%open_layers(rate)
          if (.not. self%refines) then
             call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
          end if
@@ -362,6 +363,7 @@ contains
          self%force_correction = y(2)
          self%correction(:) = self%moved(:, 2)
          if (.not. self%refines) self%correction(:) = self%correction + self%inner
+         call springs%joints%align(springs%d, self%correction)
       end associate
 
    contains
@@ -387,9 +389,10 @@ contains
          ! A correction that is round-off itself needs no digits of its own.
          if (j == 2 .and. maxval(abs(self%change(:, 1))) <= of_round_off*self%structure%total_height) return
          signal = 0.0_wp
+         inner = 0.0_wp
          do again = 1, refinements
             if (.not. self%of_dead_load) signal(lateral) = y(j)
-            self%f = springs%k*self%moved(:springs%count, j)
+            call springs%find_resistance(springs%k, self%moved(:, j), self%f)
             call self%structure%forces(self%moved(:, j), signal, self%axial, self%tangent, self%f, &
                                        self%load, inner, merge(y(j), 0.0_wp, self%of_dead_load))
             if (j == 2) self%load(:) = self%load + self%residual

@@ -239,6 +239,7 @@ contains
                self%returns = 0
             end if
             call self%correct(state)
+            call state%springs%joints%open_layers(self%dq)
             call first_end(self%step%q1, self%dq, share, i, direction)
             self%step%q1 = self%step%q1 + share*self%dq
             self%step%moved = self%step%moved + share*self%dx
@@ -351,6 +352,7 @@ contains
 
       self%of_loads = 0.0_wp
       self%of_damping = 0.0_wp
+      call state%springs%joints%open_layers(self%step%q1)
       associate (motion => state%motion, h => self%h, load => self%load, &
                  mean => 0.5_wp*(state%load + self%load))
          do i = lateral, horizontal

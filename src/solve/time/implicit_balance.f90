@@ -64,8 +64,9 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable, private :: scale(:)
       real(wp), allocatable :: largest(:)
       !> Factors that bring forces and moments of one group to one unit, those of unknowns and of springs; not
-      !> allocated where no group has both (unknowns), (springs)
-      real(wp), allocatable, private :: unit_factor(:), spring_factor(:)
+      !> allocated where no group has both (unknowns), (springs). Initial stiffness in these units
+      !> (coordinates)
+      real(wp), allocatable, private :: unit_factor(:), spring_factor(:), stiff(:)
    contains
       procedure :: start
       procedure :: find_residual
@@ -125,6 +126,7 @@ contains
                self%unit_factor = 1.0_wp/structure%reach
                self%spring_factor = merge(1.0_wp/structure%total_height, 1.0_wp, &
                                         structure%place%kind == flexure)
+               call set_stiffness(structure, self%spring_factor, self%stiff)
             end if
          end if
          self%known = .false.
@@ -143,6 +145,29 @@ contains
          self%largest = max(self%scale, force)
       end associate
    end subroutine start
+
+   !> Initial stiffness against each coordinate, in the units of the forces; that of the layers of a joint
+   !> belongs to its opening and its rotation, whose moment is in the place of the second layer.
+   subroutine set_stiffness(structure, unit, stiff)
+      class(structure_type), intent(in) :: structure
+      !> (springs)
+      real(wp), intent(inout) :: unit(:)
+      real(wp), allocatable, intent(out) :: stiff(:)
+      integer :: i, j
+
+      allocate (stiff(structure%coordinates), source=0.0_wp)
+      associate (joints => structure%joints, k => structure%initial_stiffness)
+         stiff(:size(unit)) = unit*k
+         do j = 1, joints%count
+            unit(joints%first(j) + 1) = 1.0_wp/structure%total_height
+            associate (of => [(i, i=joints%first(j), joints%last(j))], at => joints%before + 2*j)
+               stiff(of) = 0.0_wp
+               stiff(at - 1) = sum(k(of))
+               stiff(at) = sum(k(of)*joints%y(of)**2)/structure%total_height
+            end associate
+         end do
+      end associate
+   end subroutine set_stiffness
 
    !> The end of the step that was found is the start of the next one.
    subroutine go_on(self, state)
@@ -262,8 +287,7 @@ contains
                       self%g0, self%g1, self%r)
          call self%measure(structure, self%a1, self%load, relative)
          if (size(self%now%correction) > 0) then
-            relative = max(relative, largest_product(size(self%spring_factor), structure%initial_stiffness, &
-                                                     self%spring_factor, self%now%correction) &
+            relative = max(relative, largest(structure%joints%with_motion, self%stiff, self%now%correction) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
       end associate
@@ -325,8 +349,9 @@ contains
       relative = 0.0_wp
       do j = 1, size(self%scale)
          if (allocated(self%unit_factor)) then
-            call measure_all(structure%group(j)%last_spring, size(a), self%spring_factor, self%now%f, &
-                             self%unit_factor, structure%inertias, a, self%r, self%scale(j), rest)
+            call measure_all(size(a), self%unit_factor, structure%inertias, a, self%r, self%scale(j), rest)
+            self%scale(j) = max(self%scale(j), largest(structure%joints%with_force, self%spring_factor, &
+                                                       self%now%f))
          else
             call measure_group(structure%group(j), size(a), size(self%now%f), structure%inertias, a, &
                                self%now%f, self%r, self%scale(j), rest)
@@ -356,38 +381,32 @@ contains
       end do
    end subroutine measure_group
 
-   !> As `measure_group`, for one group of forces and moments.
-   pure subroutine measure_all(springs, unknowns, spring_factor, f, unit_factor, inertias, a, r, scale, rest)
-      integer, intent(in) :: springs, unknowns
-      real(wp), intent(in) :: spring_factor(springs), f(springs)
+   !> As `measure_group`, for the unknowns of one group of forces and moments.
+   pure subroutine measure_all(unknowns, unit_factor, inertias, a, r, scale, rest)
+      integer, intent(in) :: unknowns
       real(wp), intent(in) :: unit_factor(unknowns), inertias(unknowns), a(unknowns), r(unknowns)
       real(wp), intent(out) :: scale, rest
       integer :: i
 
       scale = 0.0_wp
       rest = 0.0_wp
-      !$omp simd reduction(max:scale)
-      do i = 1, springs
-         scale = max(scale, spring_factor(i)*abs(f(i)))
-      end do
       do i = 1, unknowns
          scale = max(scale, unit_factor(i)*abs(inertias(i)*a(i)))
          rest = max(rest, unit_factor(i)*abs(r(i)))
       end do
    end subroutine measure_all
 
-   !> The largest product of three numbers, in size.
-   pure real(wp) function largest_product(n, a, b, c) result(largest)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: a(n), b(n), c(n)
+   !> The largest product of two numbers in given places, in size.
+   pure real(wp) function largest(place, a, b)
+      integer, intent(in), contiguous :: place(:)
+      real(wp), intent(in), contiguous :: a(:), b(:)
       integer :: i
 
       largest = 0.0_wp
-      !$omp simd reduction(max:largest)
-      do i = 1, n
-         largest = max(largest, abs(a(i)*b(i)*c(i)))
+      do i = 1, size(place)
+         largest = max(largest, abs(a(place(i))*b(place(i))))
       end do
-   end function largest_product
+   end function largest
 
    !> Whether the residual is the round-off of the terms of the step. Modes that the step does not
    !> resolve have accelerations far beyond the motion of the step: after a shock h^2 a0 is many turns.
@@ -425,11 +444,9 @@ contains
                                                       + max(force, terms)/unit_factor))
          ! Springs between the unknowns are in equilibrium too.
          if (size(self%now%correction) > 0) then
-            associate (k => structure%initial_stiffness, m => size(self%spring_factor))
-               is_round_off = is_round_off .and. &
-                              all(k*abs(self%now%correction(:m)) <= round_off*(k*abs(self%q1(:m)) &
-                                                                 + max(force, terms)/self%spring_factor))
-            end associate
+            is_round_off = is_round_off .and. &
+                           all(self%stiff*abs(self%now%correction) <= round_off*(self%stiff*abs(self%q1) &
+                                                                                 + max(force, terms)))
          end if
       end associate
    end function is_round_off

@@ -197,7 +197,7 @@ contains
          response%ground = state%load(horizontal)
          if (.not. allocated(response%v)) then
             allocate (response%v, response%a, source=state%v)
-            allocate (response%f(state%springs%count))
+            allocate (response%f(state%springs%count), source=0.0_wp)
          end if
          response%v(:) = state%v
          if (task%recorder%channels%contents%motion) then

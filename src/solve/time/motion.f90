@@ -84,7 +84,7 @@ contains
       type(motion_result), intent(inout) :: result
       integer :: m
 
-      call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
+      call springs%find_forces(q, result%f)
       m = 0
       if (self%damped .or. self%second_order .or. springs%axial_load_varies) then
          call find_others(self, springs, v, load, result, m)
@@ -102,18 +102,19 @@ contains
       type(motion_result), intent(inout) :: result
       !> Without the inertia of the moving ground and without mass damping (unknowns)
       real(wp), intent(out), contiguous :: g(:)
+      real(wp), allocatable :: more(:)
       integer :: m
 
-      call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
+      call springs%find_forces(q, result%f)
       m = 0
       if (self%damped .or. self%second_order .or. springs%axial_load_varies) then
          call find_others(self, springs, v, load, result, m)
       end if
       if (result%resistance > 0.0_wp) then
-         associate (m => springs%count)
-            result%f = result%f + result%resistance*self%structure%initial_stiffness &
-                       *(q(:m) - result%anchor(:m))
-         end associate
+         allocate (more(springs%count))
+         call springs%find_resistance(result%resistance*self%structure%initial_stiffness, q - result%anchor, &
+                                      more)
+         result%f = result%f + more
       end if
       call self%structure%forces(q, load, result%axial(:m), result%tangent, result%f, g, result%correction)
    end subroutine forces_on_bodies
@@ -141,9 +142,9 @@ contains
       !> Loads at the time
       real(wp), intent(in) :: load(signals)
       !> Forces (springs) [N, N m]
-      real(wp), intent(out), contiguous :: f(:)
+      real(wp), intent(inout), contiguous :: f(:)
 
-      call on_lines(size(f), springs%d0, springs%f0, springs%k, q, f)
+      call springs%find_forces(q, f)
       if (self%damped .or. springs%axial_load_varies) call add_to_springs(self, springs, v, load, f)
    end subroutine joint_forces
 
@@ -170,14 +171,6 @@ contains
       end if
       if (allocated(self%modal)) f = f + modal_forces(size(v), self%modal, v)
    end subroutine add_to_springs
-
-   pure subroutine on_lines(m, d0, f0, k, q, f)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: d0(m), f0(m), k(m), q(m)
-      real(wp), intent(out) :: f(m)
-
-      f = f0 + k*(q - d0)
-   end subroutine on_lines
 
    !> Forces of the modal damping.
    pure function modal_forces(m, modal, v) result(f)

@@ -271,8 +271,8 @@ contains
    subroutine move_springs(self, state, q, in_range)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      !> Deformations (springs)
-      real(wp), intent(in), contiguous :: q(:)
+      !> Position (coordinates)
+      real(wp), intent(inout), contiguous :: q(:)
       !> Whether the deformations are within bounds
       logical, intent(out) :: in_range
 
@@ -280,6 +280,7 @@ contains
       if (.not. self%marked) then
          if (state%springs%stay_on_lines(q)) return
       end if
+      call state%springs%joints%open_layers(q)
       in_range = in_bounds(size(q), q)
       if (.not. in_range) return
       if (self%marked) then

@@ -72,6 +72,7 @@ contains
          call self%step%find_residual(state, self%h, self%load, self%residual)
          call self%iterate(state)
          self%wanted = wanted
+         call state%springs%joints%open_layers(self%step%q1)
          distance = 0.0_wp
          if (self%converged) distance = sqrt(sum(energy_of(state, self%step%q1 - self%step%now%anchor)))
          if (.not. self%converged .or. distance > 5.0_wp*max(1.0_wp, at_last/resistance)*distance_before) then

@@ -98,8 +98,11 @@ module rbs_structure_frame_element
       !> (springs) [m]
       logical :: layered = .false.
       integer, allocatable :: first(:)
-      !> Its lowest and its highest layer (2, joints)
-      integer, allocatable :: outermost(:, :)
+      !> Coordinate of the opening of each, before that of its rotation, or of its one deformation; whether it
+      !> is one spring; moment of the dead load in its layers (joints)
+      integer, allocatable :: motion(:)
+      logical, allocatable :: is_single(:)
+      real(wp), allocatable :: dead_moment(:)
       real(wp), allocatable :: arm(:, :, :), y(:)
    contains
       procedure :: leave_out_supports

@@ -81,7 +81,7 @@ contains
       gap = q
       gap(2:) = gap(2:) - dead*e%dead_rotation
       if (e%layered) then
-         call take_joints_off(e, size(e%y), d(e%before + 1:e%before + size(e%y)), gap)
+         call take_joints_off(size(e%motion), e%motion, e%is_single, e%arm, d, gap)
          return
       end if
       do j = 1, e%bending
@@ -140,21 +140,23 @@ contains
 
    !> Forces of the ends of an element in equilibrium with its springs, and the corrections of their
    !> deformations that this needs.
-   pure subroutine balance_ends(e, springs, numbers, gap, dead, dead_force, d, f, tangent, s, correction)
+   pure subroutine balance_ends(e, springs, numbers, gap, dead, dead_force, f, tangent, s, correction)
       type(frame_element), intent(in) :: e
       !> Numbers of springs in the frame, and of numbers in all tangents
       integer, intent(in) :: springs, numbers
       !> Of `compatibility_error`; share of the dead load that acts; forces that all of it makes in springs
       real(wp), intent(in) :: gap(3), dead, dead_force(springs)
-      !> Deformations and forces of all springs
-      real(wp), intent(in) :: d(springs), f(springs), tangent(numbers)
+      !> Forces of all springs
+      real(wp), intent(in) :: f(springs), tangent(numbers)
       real(wp), intent(out) :: s(3)
-      real(wp), intent(inout) :: correction(springs)
+      !> (coordinates)
+      real(wp), intent(inout), contiguous :: correction(:)
 
       associate (layout => e%layout, m => e%bending, n => e%opening, first => e%before + 1)
          if (e%layered) then
-            call layered_forces(e, m + n, tangent(layout%stiffness:), tangent(layout%rate:), gap, d(first:), &
-                                f(first:), dead, dead_force(first:), s, correction(first:))
+            call layered_forces(e, size(e%motion), m + n, size(correction), e%first, e%motion, e%is_single, &
+                                e%arm, e%dead_moment, tangent(layout%stiffness:), tangent(layout%rate:), &
+                                gap, f(first:), dead, dead_force(first:), s, correction)
          else
             call find_forces(e, m, n, tangent(layout%stiffness:), tangent(layout%rate:), &
                              tangent(layout%bent:), tangent(layout%opened:), gap, f(first:), dead, &
@@ -257,7 +259,8 @@ contains
 
       associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
          if (e%layered) then
-            call layered_rates(e, m, tangent(layout%stiffness:), tangent(layout%rate:), q, dd(first:))
+            call layered_rates(size(e%motion), size(dd), e%motion, e%is_single, e%arm, &
+                               tangent(layout%stiffness:), tangent(layout%rate:), q, dd)
          else
             call find_rates(m, tangent(layout%rate:), q, dd(first:))
          end if

@@ -294,7 +294,7 @@ contains
       end associate
    end subroutine damping_of
 
-   !> Changes of the deformations from those of the unknowns.
+   !> Changes of the deformations from those of the unknowns. Those of layers follow from their joints.
    subroutine spring_rates(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
@@ -306,7 +306,7 @@ contains
                             end_motion(self%element(i), dx), dd)
       end do
       dd(self%member_springs + 1:self%springs) = dx(self%ground)
-      dd(self%springs + 1:) = dx
+      dd(self%springs + 1:self%joints%before) = dx
    end subroutine spring_rates
 
    !> Take rates that are round-off of larger ones for zero: a spring at rest on a corner of its
@@ -348,7 +348,7 @@ contains
       terms = 0.0_wp
       work = 0.0_wp
       f = springs%forces(springs%d)
-      associate (x => springs%d(self%springs + 1:))
+      associate (x => springs%d(self%springs + 1:self%joints%before))
          do i = 1, size(self%element)
             associate (e => self%element(i))
                if (i <= self%members) then
@@ -370,7 +370,7 @@ contains
       real(wp), intent(in), contiguous :: dd(:)
       real(wp), intent(out), contiguous :: dx(:)
 
-      dx = dd(self%springs + 1:)
+      dx = dd(self%springs + 1:self%joints%before)
    end subroutine unknown_rates
 
    !> Forces on the unknowns: the lateral load and the dead one, less forces of springs and elastic rest,
@@ -391,11 +391,10 @@ contains
       associate (x => d(self%springs + 1:))
          g = part*self%dead + load(lateral)*self%pattern(lateral)%force
          g(self%ground) = g(self%ground) - f(self%member_springs + 1:)
-         correction = 0.0_wp
          do i = 1, size(self%element)
             associate (e => self%element(i))
                gap = compatibility_error(e, end_motion(e, x), d, part)
-               call balance_ends(e, size(f), size(tangent), gap, part, self%dead_force, d, f, tangent, s, &
+               call balance_ends(e, size(f), size(tangent), gap, part, self%dead_force, f, tangent, s, &
                                  correction)
                call add_end_forces(e, -s, g)
                if (self%axially_loaded .and. .not. e%is_panel) call add_second_order(e, x, g)
@@ -417,9 +416,9 @@ contains
          gap = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
          if (e%layered) then
             block
-               real(wp) :: correction(size(f))
+               real(wp) :: correction(size(d))
 
-               call balance_ends(e, size(f), size(tangent), gap, 1.0_wp, self%dead_force, d, f, tangent, s, &
+               call balance_ends(e, size(f), size(tangent), gap, 1.0_wp, self%dead_force, f, tangent, s, &
                                  correction)
             end block
          else

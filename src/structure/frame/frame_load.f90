@@ -19,6 +19,7 @@ contains
       self%dead_force = 0.0_wp
       do i = 1, self%members
          self%element(i)%dead_rotation = 0.0_wp
+         if (self%element(i)%layered) self%element(i)%dead_moment = 0.0_wp
       end do
    end procedure take_load_off
 
@@ -48,7 +49,7 @@ contains
       real(wp) :: gap(3), turned(2)
       integer :: i
 
-      associate (x => d(self%springs + 1:))
+      associate (x => d(self%springs + 1:self%joints%before))
          work = sum(self%dead*x) + sum(self%dead_force*d(:self%member_springs))
          do i = 1, size(self%element)
             associate (e => self%element(i))
@@ -66,7 +67,7 @@ contains
       real(wp) :: g(self%unknowns)
       integer :: i
 
-      associate (x => d(self%springs + 1:))
+      associate (x => d(self%springs + 1:self%joints%before))
          g = 0.0_wp
          energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%member_springs))
          do i = 1, self%members

@@ -65,7 +65,7 @@ contains
    end function has_failed
 
    module procedure remove_member
-      real(wp) :: tangent(self%tangent_numbers), correction(springs%count), s(3), q(3), energy
+      real(wp) :: tangent(self%tangent_numbers), correction(size(springs%d)), s(3), q(3), energy
       integer :: i, unstable
 
       tangent = 0.0_wp
@@ -78,11 +78,13 @@ contains
          end do
          call self%linearise(springs%k, tangent, unstable)
          call balance_ends(e, springs%count, size(tangent), compatibility_error(e, q, springs%d, 1.0_wp), &
-                           1.0_wp, self%dead_force, springs%d, &
-                           springs%forces(springs%d), tangent, s, correction)
+                           1.0_wp, self%dead_force, springs%forces(springs%d), tangent, s, correction)
+         correction = springs%d + correction
+         call springs%joints%open_layers(correction)
          do i = e%before + 1, e%before + e%bending + e%opening
-            call springs%advance_on_branch(i, springs%d(i) + correction(i))
+            call springs%advance_on_branch(i, correction(i))
          end do
+         springs%d(self%springs + 1:) = correction(self%springs + 1:)
          energy = energy - energy_of_rest(e, compatibility_error(e, q, springs%d, 1.0_wp))
          springs%work(e%before + 1) = springs%work(e%before + 1) + energy
       end associate
@@ -101,8 +103,17 @@ contains
    end procedure has_collapsed
 
    module procedure unbounded_spring
+      integer :: j
 
-      do spring = 1, self%member_springs
+      do j = 1, self%joints%count
+         spring = self%joints%first(j)
+         associate (at => self%joints%before + 2*j)
+            if (abs(d(at - 1)) > self%height .or. abs(d(at)) > farthest) return
+         end associate
+      end do
+      do j = 1, size(self%joints%others)
+         spring = self%joints%others(j)
+         if (spring > self%member_springs) exit
          if (abs(d(spring)) < min(self%height, farthest)) cycle
          if (abs(d(spring)) > merge(farthest, self%height, self%place(spring)%kind == flexure)) return
       end do

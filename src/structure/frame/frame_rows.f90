@@ -1,7 +1,6 @@
 !> Rows of results of a frame: its channels and their values.
 submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_rows
    use rbs_structure_frame_element_balance, only: chord_rotation
-   use rbs_structure_frame_layered, only: joint_motion
    use rbs_structure_spring_place, only: shear, axial
    implicit none
 
@@ -83,23 +82,13 @@ contains
       real(wp), intent(in), contiguous :: d(:), f(:)
       real(wp), intent(out) :: deformation, force
       real(wp) :: z(2)
-      integer :: j, last
 
       deformation = d(spring)
       force = f(spring)
       if (.not. self%heads(spring)) return
-      associate (e => self%element(self%place(spring)%member), joint => self%place(spring)%joint)
-         z = joint_motion(e, joint, size(e%y), d(e%before + 1:e%before + size(e%y)))
-         last = e%before + e%first(joint + 1) - 1
-         if (kind == axial) then
-            deformation = z(1)
-            force = sum(f(spring:last))
-         else
-            deformation = z(2)
-            j = spring - e%before
-            force = sum(f(spring:last)*e%y(j:j + last - spring))
-         end if
-      end associate
+      z = self%joints%motion(self%joints%of(spring), d)
+      deformation = merge(z(1), z(2), kind == axial)
+      force = merge(f(spring), f(spring + 1), kind == axial)
    end subroutine spring_response
 
    module procedure base_force

@@ -8,8 +8,7 @@ module rbs_structure_frame_layered
    implicit none
    private
 
-   public :: layered_tangent, layered_forces, layered_rates, drop_small_rates, joint_motion, &
-             take_joints_off
+   public :: layered_tangent, layered_forces, layered_rates, drop_small_rates, take_joints_off
 
    !> Joints without stiffness share a motion as if each had this part of its initial one. It costs as many
    !> digits, and refinement removes its effect.
@@ -134,76 +133,62 @@ contains
       c = [a(2)*b(3) - a(3)*b(2), a(3)*b(1) - a(1)*b(3), a(1)*b(2) - a(2)*b(1)]
    end function cross_product
 
-   !> As `find_forces`.
-   pure subroutine layered_forces(e, m, stiffness, soft, gap, d, f, dead, dead_force, s, correction)
+   !> As `find_forces`. Of a joint of layers axial force and moment are in the places of its first two.
+   pure subroutine layered_forces(e, n, m, coordinates, slot, motion, is_single, arm, dead_moment, &
+                                  stiffness, soft, gap, f, dead, dead_force, s, correction)
       type(frame_element), intent(in) :: e
-      integer, intent(in) :: m
+      !> Numbers of its joints and springs, and of coordinates
+      integer, intent(in) :: n, m, coordinates
+      !> Of the element, see there
+      integer, intent(in) :: slot(n), motion(n)
+      logical, intent(in) :: is_single(n)
+      real(wp), intent(in) :: arm(3, 2, n), dead_moment(n)
       !> Of `layered_tangent`
-      real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1)
-      !> Compatibility error: motion of the ends less that of the joints; deformations and forces of the
-      !> springs; the share of the dead load that acts, and its forces in them
-      real(wp), intent(in) :: gap(3), d(m), f(m), dead, dead_force(m)
-      real(wp), intent(out) :: s(3), correction(m)
-      real(wp) :: all(3), more(3), force, moment, moved(2)
+      real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, n)
+      !> Compatibility error: motion of the ends less that of the joints; forces of the springs; the share of
+      !> the dead load that acts, and its forces in them
+      real(wp), intent(in) :: gap(3), f(m), dead, dead_force(m)
+      real(wp), intent(out) :: s(3)
+      real(wp), intent(inout) :: correction(coordinates)
+      real(wp) :: all(3), more(3)
       integer :: j
 
       all = 0.0_wp
-      do j = 1, size(e%first) - 1
-         associate (of => e%first(j), last => e%first(j + 1) - 1)
-            call add_up(last - of + 1, e%y(of:last), soft(2, j), f(of:last), dead, dead_force(of:last), &
-                        force, moment)
-            correction(of) = force
-            all = all + e%arm(:, 1, j)*(soft(1, j)*force)
-            if (of == last) cycle
-            correction(of + 1) = moment
-            all = all + soft(4:, j)*(soft(3, j)*moment)
+      do j = 1, n
+         associate (at => motion(j), i => slot(j))
+            if (is_single(j)) then
+               correction(at) = f(i) - dead*dead_force(i)
+            else
+               correction(at) = f(i)
+               correction(at + 1) = (f(i + 1) - dead*dead_moment(j)) - soft(2, j)*f(i)
+               all = all + soft(4:, j)*(soft(3, j)*correction(at + 1))
+            end if
+            all = all + arm(:, 1, j)*(soft(1, j)*correction(at))
          end associate
       end do
       s = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
       ! In joints all but without stiffness these forces make motions beside which the gap is round-off.
       all = gap - motion_of_rest(e, s)
-      do j = 1, size(e%first) - 1
-         associate (a => e%arm(:, 1, j), b => soft(4:, j), of => e%first(j))
-            correction(of) = unbalance(correction(of), a(1)*s(1), a(2)*s(2), a(3)*s(3))
-            all = all + a*(soft(1, j)*correction(of))
-            if (of == e%first(j + 1) - 1) cycle
-            correction(of + 1) = unbalance(correction(of + 1), b(1)*s(1), b(2)*s(2), b(3)*s(3))
-            all = all + b*(soft(3, j)*correction(of + 1))
+      do j = 1, n
+         associate (at => motion(j), a => arm(:, 1, j), b => soft(4:, j))
+            correction(at) = unbalance(correction(at), a(1)*s(1), a(2)*s(2), a(3)*s(3))
+            all = all + a*(soft(1, j)*correction(at))
+            if (is_single(j)) cycle
+            correction(at + 1) = unbalance(correction(at + 1), b(1)*s(1), b(2)*s(2), b(3)*s(3))
+            all = all + b*(soft(3, j)*correction(at + 1))
          end associate
       end do
       more = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
       s = s + more
-      do j = 1, size(e%first) - 1
-         associate (of => e%first(j), last => e%first(j + 1) - 1)
-            force = soft(1, j)*(work_on(e%arm(:, 1, j), more) - correction(of))
-            if (of == last) then
-               correction(of) = force
-               cycle
-            end if
-            moment = soft(3, j)*(work_on(soft(4:, j), more) - correction(of + 1))
-            ! Layers stay in line.
-            moved = joint_motion(e, j, m, d) + [force - soft(2, j)*moment, moment]
-            call align(last - of + 1, e%y(of:last), moved, d(of:last), correction(of:last))
+      do j = 1, n
+         associate (at => motion(j))
+            correction(at) = soft(1, j)*(work_on(arm(:, 1, j), more) - correction(at))
+            if (is_single(j)) cycle
+            correction(at + 1) = soft(3, j)*(work_on(soft(4:, j), more) - correction(at + 1))
+            correction(at) = correction(at) - soft(2, j)*correction(at + 1)
          end associate
       end do
    end subroutine layered_forces
-
-   !> Force of the springs of a joint and moment about its centre of stiffness, less those of dead load in
-   !> them.
-   pure subroutine add_up(n, y, centre, f, dead, dead_force, force, moment)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), centre, f(n), dead, dead_force(n)
-      real(wp), intent(out) :: force, moment
-      integer :: i
-
-      force = 0.0_wp
-      moment = 0.0_wp
-      !$omp simd reduction(+:force, moment)
-      do i = 1, n
-         force = force + (f(i) - dead*dead_force(i))
-         moment = moment + (y(i) - centre)*(f(i) - dead*dead_force(i))
-      end do
-   end subroutine add_up
 
    !> Work of the forces of the ends per unit motion of a joint.
    pure real(wp) function work_on(arm, s)
@@ -212,81 +197,41 @@ contains
       work_on = arm(1)*s(1) + arm(2)*s(2) + arm(3)*s(3)
    end function work_on
 
-   !> Corrections that bring the springs of a joint in line.
-   pure subroutine align(n, y, moved, d, correction)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), moved(2), d(n)
-      real(wp), intent(out) :: correction(n)
-      integer :: i
-
-      !$omp simd
-      do i = 1, n
-         correction(i) = (moved(1) + y(i)*moved(2)) - d(i)
-      end do
-   end subroutine align
-
    !> Take the motions of the ends that the joints make from those that there are.
-   pure subroutine take_joints_off(e, m, d, gap)
-      type(frame_element), intent(in) :: e
-      integer, intent(in) :: m
-      real(wp), intent(in) :: d(m)
+   pure subroutine take_joints_off(n, motion, is_single, arm, d, gap)
+      integer, intent(in) :: n, motion(n)
+      logical, intent(in) :: is_single(n)
+      real(wp), intent(in) :: arm(3, 2, n)
+      !> (coordinates)
+      real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(inout) :: gap(3)
-      real(wp) :: z(2)
       integer :: j
 
-      do j = 1, size(e%first) - 1
-         z = joint_motion(e, j, m, d)
-         gap = gap - (e%arm(:, 1, j)*z(1) + e%arm(:, 2, j)*z(2))
+      do j = 1, n
+         gap = gap - arm(:, 1, j)*d(motion(j))
+         if (.not. is_single(j)) gap = gap - arm(:, 2, j)*d(motion(j) + 1)
       end do
    end subroutine take_joints_off
 
-   !> Opening in the middle and rotation of a joint of layers, from its outermost ones; or the deformation
-   !> of a single spring.
-   pure function joint_motion(e, joint, m, d) result(z)
-      type(frame_element), intent(in) :: e
-      integer, intent(in) :: joint, m
-      real(wp), intent(in) :: d(m)
-      real(wp) :: z(2)
-
-      associate (low => e%outermost(1, joint), high => e%outermost(2, joint))
-         z = [d(low), 0.0_wp]
-         if (low == high) return
-         z(2) = (d(high) - d(low))/(e%y(high) - e%y(low))
-         z(1) = d(low) - e%y(low)*z(2)
-      end associate
-   end function joint_motion
-
-   !> Changes of the deformations with those of the ends.
-   pure subroutine layered_rates(e, m, stiffness, soft, q, dd)
-      type(frame_element), intent(in) :: e
-      integer, intent(in) :: m
-      real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1), q(3)
-      real(wp), intent(out) :: dd(m)
-      real(wp) :: s(3), z(2)
+   !> Changes of the motions of the joints with those of the ends.
+   pure subroutine layered_rates(n, coordinates, motion, is_single, arm, stiffness, soft, q, dd)
+      integer, intent(in) :: n, coordinates, motion(n)
+      logical, intent(in) :: is_single(n)
+      real(wp), intent(in) :: arm(3, 2, n), stiffness(3, 3), soft(joint_numbers, n), q(3)
+      real(wp), intent(inout) :: dd(coordinates)
+      real(wp) :: s(3)
       integer :: j
 
       s = stiffness(:, 1)*q(1) + stiffness(:, 2)*q(2) + stiffness(:, 3)*q(3)
-      do j = 1, size(e%first) - 1
-         associate (of => e%first(j), last => e%first(j + 1) - 1)
-            z(1) = soft(1, j)*work_on(e%arm(:, 1, j), s)
-            z(2) = soft(3, j)*work_on(soft(4:, j), s)
-            z(1) = z(1) - soft(2, j)*z(2)
-            call open_up(last - of + 1, e%y(of:last), z, dd(of:last))
+      do j = 1, n
+         associate (at => motion(j))
+            dd(at) = soft(1, j)*work_on(arm(:, 1, j), s)
+            if (is_single(j)) cycle
+            dd(at + 1) = soft(3, j)*work_on(soft(4:, j), s)
+            dd(at) = dd(at) - soft(2, j)*dd(at + 1)
          end associate
       end do
    end subroutine layered_rates
-
-   pure subroutine open_up(n, y, z, dd)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), z(2)
-      real(wp), intent(out) :: dd(n)
-      integer :: i
-
-      !$omp simd
-      do i = 1, n
-         dd(i) = z(1) + y(i)*z(2)
-      end do
-   end subroutine open_up
 
    !> Take rates for zero that are below a share of the terms they are sums of.
    pure subroutine drop_small_rates(e, m, stiffness, soft, terms, share, dd)

@@ -101,16 +101,16 @@ contains
       call number_unknowns(frame, node, member)
       frame%springs = frame%member_springs + sum([(count(node(i)%ground%rule /= '' .and. &
                                                          frame%number(:, i) > 0), i=1, size(node))])
-      frame%coordinates = frame%springs + frame%unknowns
+      call number_joints(frame, member)
+      frame%coordinates = frame%joints%before + 2*frame%joints%count
       associate (springs => frame%springs, inside => frame%member_springs)
          allocate (spring(springs), frame%place(springs), frame%spring_place(inside), &
                    frame%ground(springs - inside))
-         allocate (frame%heads(inside), source=.false.)
          allocate (frame%arm(frame%coordinates), frame%constant_axial(springs), source=0.0_wp)
          direction = 1
          if (present(vertical)) direction = merge(2, 1, vertical)
          frame%arm(springs + frame%number(direction, top)) = 1.0_wp
-         frame%control = frame%arm(springs + 1:)
+         frame%control = frame%arm(springs + 1:springs + frame%unknowns)
       end associate
       call set_ground(frame, node, spring)
       call set_elements(frame, node, member, spring)
@@ -258,6 +258,33 @@ contains
       frame%pattern%last = frame%unknowns
    end subroutine set_ground
 
+   !> Joints of layers, in the order of the springs.
+   subroutine number_joints(frame, member)
+      type(frame_type), intent(inout) :: frame
+      type(frame_member), intent(in) :: member(:)
+      integer :: of(frame%springs), at, i, j, joints
+      real(wp) :: y(frame%springs)
+
+      allocate (frame%heads(frame%member_springs), source=.false.)
+      of = 0
+      y = 0.0_wp
+      at = 0
+      joints = 0
+      do i = 1, size(member)
+         associate (m => member(i))
+            do j = 1, size(m%kind)
+               at = at + 1
+               if (m%kind(j) /= layer) cycle
+               frame%heads(at) = findloc(m%joint, m%joint(j), dim=1) == j
+               if (frame%heads(at)) joints = joints + 1
+               of(at) = joints
+               y(at) = m%y(j)
+            end do
+         end associate
+      end do
+      call frame%joints%create(of, y, frame%springs + frame%unknowns)
+   end subroutine number_joints
+
    !> Geometry of the elements, their springs, and forces of the dead load in them.
    subroutine set_elements(frame, node, member, spring)
       type(frame_type), intent(inout) :: frame
@@ -307,11 +334,10 @@ contains
                   frame%spring_place(before + j) = m%place(j)
                   frame%place(before + j) = spring_place(m%kind(j), i, m%joint(j), index=i, owner=m%name)
                   if (m%kind(j) == shear) call assign_work_source(m, j, before, frame%place(before + j))
-                  frame%heads(before + j) = m%kind(j) == layer .and. findloc(m%joint, m%joint(j), dim=1) == j
                   if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
                   if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
                end do
-               if (any(m%kind == layer)) call set_joints(e, m, clear)
+               if (any(m%kind == layer)) call set_joints(e, m, clear, frame)
                call put_load(frame, m, i, axis, clear)
                call frame%compress(i, 0.0_wp)
                call e%lay_out(frame%tangent_numbers)
@@ -382,23 +408,27 @@ contains
    end subroutine list_springs
 
    !> Joints of an element some of which are of layers.
-   subroutine set_joints(e, m, clear)
+   subroutine set_joints(e, m, clear, frame)
       type(frame_element), intent(inout) :: e
       type(frame_member), intent(in) :: m
       real(wp), intent(in) :: clear
+      type(frame_type), intent(in) :: frame
       real(wp) :: moment(3)
       integer :: i, j, joints
 
       e%layered = .true.
       joints = maxval(m%joint)
       e%y = m%y
-      allocate (e%first(joints + 1), e%arm(3, 2, joints), e%outermost(2, joints))
+      allocate (e%first(joints + 1), e%motion(joints), e%is_single(joints), e%arm(3, 2, joints))
+      allocate (e%dead_moment(joints), source=0.0_wp)
       e%first(joints + 1) = size(m%kind) + 1
       e%arm = 0.0_wp
       do j = 1, joints
          i = findloc(m%joint, j, dim=1)
          e%first(j) = i
-         e%outermost(:, j) = [minloc(m%y, dim=1, mask=m%joint == j), maxloc(m%y, dim=1, mask=m%joint == j)]
+         e%motion(j) = e%before + i
+         e%is_single(j) = m%kind(i) /= layer
+         if (.not. e%is_single(j)) e%motion(j) = frame%joints%before + 2*frame%joints%of(e%before + i) - 1
          moment = [0.0_wp, m%place(i) - 1.0_wp, m%place(i)]
          select case (m%kind(i))
          case (layer)
@@ -433,7 +463,7 @@ contains
          at = frame%element(i)%before + j
          if (m%kind(j) == flexure) frame%dead_force(at) = -down*clear**2*share*(1.0_wp - share)/2.0_wp
          if (frame%heads(at)) call bend_layers(-down*clear**2*share*(1.0_wp - share)/2.0_wp, &
-                                               m%y, m%joint == m%joint(j), frame%element(i)%before)
+                                               m%y, m%joint == m%joint(j), frame%element(i))
          if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
       end do
       frame%element(i)%load_across = down
@@ -449,14 +479,15 @@ contains
    contains
 
       !> The moment in a joint of layers, as two forces on its outermost ones.
-      subroutine bend_layers(moment, y, joint_numbers, before)
+      subroutine bend_layers(moment, y, joint_numbers, e)
          real(wp), intent(in) :: moment, y(:)
          logical, intent(in) :: joint_numbers(:)
-         integer, intent(in) :: before
+         type(frame_element), intent(inout) :: e
 
+         e%dead_moment(m%joint(j)) = moment
          associate (low => minloc(y, dim=1, mask=joint_numbers), high => maxloc(y, dim=1, mask=joint_numbers))
-            frame%dead_force(before + high) = moment/(y(high) - y(low))
-            frame%dead_force(before + low) = -moment/(y(high) - y(low))
+            frame%dead_force(e%before + high) = moment/(y(high) - y(low))
+            frame%dead_force(e%before + low) = -moment/(y(high) - y(low))
          end associate
       end subroutine bend_layers
    end subroutine put_load
