@@ -111,14 +111,14 @@ contains
       stable = .true.
       shares = .false.
       associate (layout => e%layout, m => e%bending, n => e%opening)
-         associate (known => tangent(layout%branch:layout%branch + springs - 1))
-            ! With the initial stiffness an array of zeros belongs to no branch.
+         associate (known => tangent(layout%branch:layout%branch + springs - 1), &
+                    state => tangent(layout%rate - 1))
             change = 0.0_wp
             !$omp simd reduction(max:change)
             do j = 1, springs
-               change = max(change, abs(tangent(layout%branch + j - 1) - (k(j) + k0(j))))
+               change = max(change, abs(tangent(layout%branch + j - 1) - k(j)))
             end do
-            if (springs > 0 .and. .not. change > 0.0_wp) return
+            if (state > 0.0_wp .and. .not. change > 0.0_wp) return
             if (e%is_panel) then
                tangent(layout%stiffness:layout%branch - 1) = 0.0_wp
                tangent(layout%stiffness) = k(1)
@@ -130,10 +130,10 @@ contains
                call find_tangent(e, m, n, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
                                  tangent(layout%bent:), tangent(layout%opened:), stable, shares)
             end if
-            tangent(layout%rate - 1) = merge(1.0_wp, 0.0_wp, shares)
-            known = k + k0
+            state = merge(2.0_wp, 1.0_wp, shares)
             ! That it snaps back is to be found again.
-            if (.not. stable .and. springs > 0) known(1) = huge(1.0_wp)
+            if (.not. stable) state = -state
+            known = k
          end associate
       end associate
    end subroutine set_tangent

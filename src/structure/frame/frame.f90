@@ -224,7 +224,7 @@ contains
          end associate
          if (.not. stable) unstable = i
          if (.not. present(shares)) cycle
-         if (tangent(self%element(i)%layout%rate - 1) > 0.0_wp) shares = .true.
+         if (abs(tangent(self%element(i)%layout%rate - 1)) > 1.0_wp) shares = .true.
       end do
    end subroutine linearise
 
