@@ -114,9 +114,9 @@ contains
             if (allocated(error) .or. self%springs%crushed_joint() > 0) return
             call self%look(target, self%equilibrium%unbalance, .true., error)
             if (allocated(error)) return
+            if (self%goes_back .and. .not. went_back) call begin_loop(self)
             call begin_line(self, self%direction)
             self%last_way = self%direction
-            if (self%goes_back .and. .not. went_back) call begin_loop(self)
          end if
          if (self%goes_back) then
             if (self%ends == 0 .or. direction*self%finish < -max(abs(target), self%farthest)) then
@@ -196,30 +196,56 @@ contains
       if (direction < 0) self%rate = -self%rate
    end subroutine solve_line
 
-   !> Begin the line that was found: where it starts and where it ends.
+   !> Begin the line that was found: where it starts and where it ends. Where the control may turn, its last
+   !> digit is a long way of the springs: these are corrected across the path, and the control follows.
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way, residual
+      real(wp) :: way, residual, along
+      logical :: turns
 
       self%arrived = 0
-      self%start = self%control
-      self%displacement_start = self%displacement
-      self%force_start = self%force + self%equilibrium%force_correction
-      self%q(:) = self%springs%d + self%equilibrium%correction
-      call keep_within(self%moving, self%springs%d, self%equilibrium%correction, self%rate, &
-                       self%springs%first, self%springs%last, self%q)
-      residual = self%displacement - self%structure%top_displacement(self%q)
-      if (self%by_force) then
-         self%displacement_start = self%displacement - residual
-      else if (abs(residual) > 0.0_wp) then
-         self%q(:) = self%q + direction*residual*self%rate
-         self%force_start = self%force_start + self%equilibrium%force_rate*residual
-      end if
+      along = 0.0_wp
+      associate (line => self%equilibrium, m => self%moving)
+         turns = self%may_go_back .and. (self%in_loop .or. line%force_rate < 0.0_wp)
+         if (turns) then
+            along = share_along(m, self%structure%initial_stiffness, line%correction, self%rate)
+            line%correction = line%correction - along*self%rate
+         end if
+         self%start = self%control - direction*along
+         self%displacement_start = self%displacement - direction*along
+         self%force_start = self%force + line%force_correction - direction*along*line%force_rate
+         self%q(:) = self%springs%d + line%correction
+         call keep_within(m, self%springs%d, line%correction, self%rate, self%springs%first, &
+                          self%springs%last, self%q)
+         residual = self%displacement - self%structure%top_displacement(self%q)
+         if (self%by_force) then
+            self%displacement_start = self%displacement - residual
+         else if (abs(residual) > 0.0_wp .and. .not. turns) then
+            self%q(:) = self%q + direction*residual*self%rate
+            self%force_start = self%force_start + line%force_rate*residual
+         end if
+      end associate
       call nearest_end(self%springs, self%q(:self%moving), self%rate(:self%moving), way, self%ends)
       self%finish = direction*huge(1.0_wp)
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
+
+   !> Share of the rates in a correction, measured by the initial stiffness.
+   pure real(wp) function share_along(n, weight, correction, rate) result(share)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: weight(n), correction(n), rate(n)
+      real(wp) :: square
+      integer :: i
+
+      share = 0.0_wp
+      square = 0.0_wp
+      do i = 1, n
+         share = share + weight(i)*rate(i)*correction(i)
+         square = square + weight(i)*rate(i)**2
+      end do
+      share = share/max(square, tiny(1.0_wp))
+   end function share_along
 
    !> Round-off of the equilibrium is corrected in full, off the rear end of a line too, or the rest
    !> would be missing at the next corner. More than round-off moves no spring off its line.
