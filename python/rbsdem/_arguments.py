@@ -33,6 +33,10 @@ _MOST = 60
 _NO_NUMBERS = (bool, np.bool_, str, bytes, bytearray, np.datetime64, np.timedelta64)
 
 
+#: Of Fortran.
+_LARGEST_INTEGER = 2**31 - 1
+
+
 def shown(value: object) -> str:
     """Return a value for a message; of a record, or where it is long, only its kind."""
     try:
@@ -102,7 +106,7 @@ def integer(value: Any, name: str, **bounds: Any) -> int:
     # A time of numpy is one of its whole numbers.
     if isinstance(value, _NO_NUMBERS) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name} = {shown(value)} must be a whole number")
-    if abs(int(value)) > np.iinfo(np.int32).max:
+    if abs(int(value)) > _LARGEST_INTEGER:
         raise InputError(f"{name} = {shown(value)} is too large")
     return int(value)
 

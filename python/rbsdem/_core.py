@@ -13,7 +13,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -33,6 +33,7 @@ UNSET = -float(np.finfo(np.float64).max)
 
 #: Whole numbers below this are exact as a float.
 _EXACT = 1 << 53
+_PLAIN = {float, int}
 
 _ANALYSIS_FAILED = 1
 _LONG_RUN = 3
@@ -95,7 +96,8 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
             text = _arguments.one_line(value) if isinstance(value, Text) else word(value)
             words.append(f"{key}={text}")
         elif isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.ndim):
-            plain = all(type(i) is float or (type(i) is int and abs(i) < _EXACT) for i in value)
+            kinds = set(map(type, value))
+            plain = kinds <= _PLAIN and (int not in kinds or all(abs(i) < _EXACT for i in value))
             items = value if plain else vector(value, f"{name}: {key}").tolist()
             if len(items):
                 words.append(f"{key}:{len(items)}")
@@ -234,7 +236,8 @@ def _ask(
     )
     status, length, count, width, kept, holds = sizes.tolist()
     # An answer without rows or structure is released when it has been read, an empty one at once.
-    raw, values = _rbsdem.rbs_read(answer, length, count) if answer.any() else (b"", _NOTHING)
+    there = length or count or kept or holds
+    raw, values = _rbsdem.rbs_read(answer, length, count) if there else (b"", _NOTHING)
     whole = _Kept(answer, address, (kept, width)) if kept or holds else None
     rows = np.asarray(whole) if kept else np.empty((0, width))
     return Answer(raw[:length].decode("utf-8", "replace"), values, rows, status, whole)
@@ -247,6 +250,16 @@ def evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer
         error = SolveError if answer.status == _ANALYSIS_FAILED else InputError
         raise error(answer.text)
     return answer
+
+
+def check_law(what: str, text: str, numbers: list[float]) -> None:
+    """Raise `InputError` if the law of a material is not allowed; the same laws come often."""
+    _check_law(what, text, *numbers)
+
+
+@lru_cache
+def _check_law(what: str, text: str, *numbers: float) -> None:
+    evaluate(what, Statement(text, list(numbers)), strain=0.0)
 
 
 class Made:

@@ -178,6 +178,11 @@ contains
       !> Whether the value may be missing
       logical, intent(in), optional :: optional
 
+      if (self%mode == putting) then
+         ! Most visits put one number, and make no key for it.
+         if (name == self%wanted) x = self%number(1)
+         return
+      end if
       call one_number(self, key_type(name=name, unit=unit, bound=bound, default=x, meaning=meaning, &
                                      optional=is_true(optional)), x)
    end subroutine real_key

@@ -193,9 +193,17 @@ contains
       integer, intent(in) :: place
       real(wp), intent(in), contiguous, target :: number(:)
       real(wp), allocatable, target :: si(:)
+      integer :: parameter
 
       if (place == ignored) return
+      ! The last keys of a spring are the parameters of its rule.
+      parameter = place - size(self%keys)
+      if (self%is_spring()) parameter = parameter + size(self%rule_keys)
       if (self%units%is_si()) then
+         if (parameter > 0) then
+            self%entries%entry(self%entries%count)%spring%value(parameter) = number(1)
+            return
+         end if
          call self%visitor%put(self%keys(place)%name, number=number)
       else
          si = self%units%into_si(number, unit_in_group(self%keys(place)%unit, self%group))

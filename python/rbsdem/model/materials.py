@@ -57,7 +57,7 @@ class Concrete:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "concrete")
-        _core.evaluate("concrete_response", self._law("ts"), strain=0.0)
+        _core.check_law("concrete_response", *self._law("ts"))
 
     def statement(self) -> _core.Statement:
         """Return the keys of the concrete with their values."""
@@ -126,7 +126,7 @@ class Steel:
         _arguments.convert(self, "steel")
         if given(self.fu) is None:
             object.__setattr__(self, "fu", Derived(1.5 * self.fy))
-        _core.evaluate("steel_response", self.statement(), strain=0.0)
+        _core.check_law("steel_response", *self.statement())
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, cached_property
 from types import MappingProxyType
 
 from rbsdem import _arguments, _package
@@ -106,7 +106,7 @@ class ModelParameters:
     def __getattr__(self, name: str) -> float:
         raise AttributeError(f"there is no parameter {name!r}")
 
-    @property
+    @cached_property
     def own(self) -> tuple[str, ...]:
         """Names of the parameters that differ from those of the version; all of another version."""
         if self.version != VERSION:

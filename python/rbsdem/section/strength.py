@@ -658,7 +658,16 @@ def bond_demand(section: Section, length: float) -> float:
 
 def _crossing(falling: Callable[[float], float], most: float) -> float:
     """Return where a falling function equals its argument, from 0 to `most`, to the last digit."""
-    low, high = 0.0, most
+    low, high, before, at_before, v = 0.0, most, 0.0, most, 0.5 * most
+    # Secants come near; the last digits are halved.
+    for _ in range(12):
+        at = falling(v) - v
+        if abs(v - before) <= 1e-9 * v or at == at_before:
+            break
+        before, at_before, v = v, at, v - at * (v - before) / (at - at_before)
+    for end in (v * (1.0 - 8e-15), v * (1.0 + 8e-15)):
+        if low < end < high:
+            low, high = (end, high) if falling(end) > end else (low, end)
     while low < (v := 0.5 * (low + high)) < high:
         low, high = (v, high) if falling(v) > v else (low, v)
     return v
