@@ -50,8 +50,8 @@ module rbs_structure_frame_element
 
    !> Where the numbers of an element begin in the work array of all tangents of a frame.
    type :: tangent_layout
-      !> K (3, 3), and behind it the state: 0 before the tangent is found, 2 if springs without stiffness share
-      !> a motion, else 1, and with a minus sign where the element snaps back
+      !> K (3, 3), and behind it the state: 0 before the tangent is found, 2 if springs without stiffness
+      !> share a motion, else 1, and with a minus sign where the element snaps back
       integer :: stiffness = 1
       !> Deformations per motion of the ends, dd/dq (3, springs); of joints of layers see `layered_tangent`
       !> (of_joint, joints)
