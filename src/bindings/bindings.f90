@@ -7,13 +7,8 @@ subroutine rbs_evaluate(what, statement, nn, number, names, m, input, made, cont
    ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, and zero
    ! if there is nothing to read; `address` is that of its rows, which may be many and are not copied: Python
    ! reads them in place and releases them with the last array that refers to them. An answer with a structure
-<<<<<<< HEAD
-   ! is kept too, and is `made` where this structure is asked about. `sizes`: status (0 success, 1 the
-   ! analysis failed, 2 bad input, 3 a long run that was not started), characters of the text, numbers of the values,
-=======
    ! is kept too, and is `made` where this structure is asked about. `sizes`: status (0 success, 1 the run
    ! failed, 2 bad input, 3 a long run that was not started), characters of the text, numbers of the values,
->>>>>>> e3b4618 (Two lines of 111 columns are broken)
    ! values of a row, rows, and whether there is a structure (1). Another thread may read and set `control`.
    use iso_c_binding, only: c_double, c_f_pointer, c_int, c_loc, c_null_ptr
    use rbs_bindings_evaluate, only: evaluate
