@@ -7,7 +7,7 @@ ends of a property, a laboratory with more than eight tests, a decade. The param
 are a step of Gauss-Newton from those of all tests, less the step of all tests themselves: leaving
 out is additive to first order. Everything else is that of `studies/spread_table.py --once`.
 
-**Rule.** A column outside the range of the tests (`column.outside`) has a wider band and wider
+**Rule.** A column outside the range of the tests (`column.warnings`) has a wider band and wider
 intervals: four numbers, of force, peak, work and drift at loss. With each of them the kinds at the
 ends of a property hold 80 % in the mean, every kind alike; a kind is judged with the numbers of the
 others. Laboratories and decades are within the range, so nothing widens. The last column is the

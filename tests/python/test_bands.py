@@ -96,7 +96,7 @@ def test_intervals() -> None:
 
 
 def test_outside_the_range_of_the_tests_it_says_so() -> None:
-    assert column().outside == ()
+    assert column().warnings == ()
     section = replace(
         SECTION,
         concrete=Concrete(140e6),
@@ -113,13 +113,13 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
         "shear span over depth",
         "tie spacing over bar diameter",
     ]
-    assert [text.split(" =")[0] for text in far.outside] == names
+    assert [text.split(" =")[0] for text in far.warnings] == names
     said = str(caught[0].message)
     assert said.startswith("axial_load = -100000 N is tension; compression is positive")
-    assert said.endswith("; ".join(far.outside))
+    assert said.endswith("; ".join(far.warnings))
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
         found = rbsdem.peer.band(far, PATH[:3], scatter=NONE)
-    assert found.remarks == far.outside
+    assert found.warnings == far.warnings
     with pytest.warns(AccuracyWarning, match="is outside"):
         wide = rbsdem.peer.band(far, PATH[:3], scatter=replace(NONE, outside=(1.5, 2.0, 3.0, 4.0)))
     np.testing.assert_allclose(wide.upper - wide.force, 1.5 * (found.upper - found.force))

@@ -15,7 +15,7 @@ import rbsdem
 from rbsdem import Concrete, InputError, RectangularSection, Steel, Ties, plot
 from rbsdem.frames import FrameNode, Member, TeeSection
 from rbsdem.section import diagram, flange_width, moment_curvature, rigid_ends
-from rbsdem.section.hinge import cut
+from rbsdem.section.hinge import strips_of
 from rbsdem.section.strength import nominal_moment
 from rbsdem.springs import Elastic
 
@@ -47,7 +47,7 @@ def test_sizes_and_strips_in_closed_form(tee):
     assert tee.centroid == pytest.approx(centroid)
     assert tee.inertia == pytest.approx(inertia)
     assert (tee.web_width, tee.shear_area) == (0.3, pytest.approx(5 / 6 * web))
-    strips = cut(tee, 14)
+    strips = strips_of(tee, 14)
     pieces = [(strip.y, strip.area) for strip in (*strips.core, *strips.cover)]
     assert sum(a for _, a in pieces) == pytest.approx(tee.gross_area)
     assert sum(a * y for y, a in pieces) == pytest.approx(tee.gross_area * centroid)
@@ -55,7 +55,7 @@ def test_sizes_and_strips_in_closed_form(tee):
     fine = [
         (strip.y, strip.area)
         for part in ("core", "cover")
-        for strip in getattr(cut(tee, 2000), part)
+        for strip in getattr(strips_of(tee, 2000), part)
     ]
     for depth in (0.05, 0.12, 0.2, 0.42, 0.5):
         inside = [(y, a) for y, a in fine if y < depth - 0.25]

@@ -66,10 +66,10 @@ def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> Non
     assert len(plot.prediction(row)) == 2
     high = replace(mine, concrete_strength=140e6)
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
-        assert peer.predict(high, displacement=PATH).remarks
+        assert peer.predict(high, displacement=PATH).warnings
     # Of several it is in the rows, and nothing is warned of.
     (far,) = peer.predict([high], displacement=PATH, bands=True, samples=8)
-    assert far.remarks == far.band.remarks
+    assert far.warnings == far.band.warnings
 
 
 def test_what_cannot_be_read_or_drawn_is_no_neighbour(folder: Path, tmp_path: Path) -> None:

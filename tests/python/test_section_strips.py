@@ -28,7 +28,7 @@ DISC = math.pi / 4 * 0.44**2
 
 def cut(specimen: peer.Specimen, number: int) -> Strips:
     drawing = peer.draw(specimen)
-    return hinge.cut(
+    return hinge.strips_of(
         drawing.section,
         number,
         restrained=drawing.restrained,

@@ -9,8 +9,7 @@ import pytest
 
 import rbsdem
 from rbsdem.cli import main
-from rbsdem.methods.problems import PROBLEMS, Problem
-from rbsdem.methods.verification import Comparison
+from rbsdem.methods.verification import PROBLEMS, Comparison, Problem
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=[one.name for one in PROBLEMS])

@@ -82,7 +82,7 @@ def parameter(column: Structure, name: str, path: ParameterPath) -> Parameter | 
     bounds = default_bounds("" if None in path else str(path[-1]), value, len(path) == 1)
     if bounds is None:
         return None
-    least, most = ends(column, path)
+    least, most = key_bounds(column, path)
     return Parameter(
         value, max(bounds[0], least), min(bounds[1], most), unit_of(column, path), name
     )
@@ -96,7 +96,7 @@ def unit_of(column: Structure, path: ParameterPath) -> str:
     return (_NORMAL if "layers" in path else group).get(unit, unit)
 
 
-def ends(column: Structure, path: ParameterPath) -> tuple[float, float]:
+def key_bounds(column: Structure, path: ParameterPath) -> tuple[float, float]:
     """Return the least and the largest value that the key of a parameter takes."""
     key = _key(column, path)
     least, most = key.get("least"), key.get("most")
@@ -379,7 +379,7 @@ def _within(
             f"{start:g}; move the bounds, or start from another column"
         )
     if not parameters.offered:
-        least, most = ends(parameters.column, parameters.paths[name])
+        least, most = key_bounds(parameters.column, parameters.paths[name])
         if pair[0] < least or pair[1] > most:
             side = f"below {least:g}" if pair[0] < least else f"above {most:g}"
             raise InputError(

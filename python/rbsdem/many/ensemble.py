@@ -36,8 +36,8 @@ from rbsdem.many.plan import (
     Piece,
     Plan,
     Share,
+    chunks,
     compute,
-    cut,
     expected,
     one_run,
 )
@@ -517,7 +517,7 @@ def _carried_out(
             if kept is not None:
                 kept.write_if_due()
 
-        pieces, how = cut(each, pace.longest), {"beat": beat, "stop": workers.stop}
+        pieces, how = chunks(each, pace.longest), {"beat": beat, "stop": workers.stop}
         work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
     return outcome, resumed, end
 

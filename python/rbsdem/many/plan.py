@@ -133,7 +133,7 @@ class Outcome:
         self.errors.update({int(runs[run]): text for run, text in other.errors.items()})
 
 
-def cut(seconds: Array, longest: Callable[[], float]) -> Iterator[Piece]:
+def chunks(seconds: Array, longest: Callable[[], float]) -> Iterator[Piece]:
     """Yield the tasks of runs that are expected to take some seconds each (runs,).
 
     `longest` is asked before each task for its expected seconds; one run is the least.

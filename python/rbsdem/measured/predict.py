@@ -97,7 +97,7 @@ class Prediction:
         The prediction with its 80 % band and intervals; None unless bands were asked for.
     nearest : tuple of Neighbour
         The tests that are most like it among those of `near`, with the errors of their predictions.
-    remarks : tuple of str
+    warnings : tuple of str
         Where the column is outside the range of the tests that the model was fitted to.
     limit_states : dict of str to float, or None
         Drifts at which limit states are reached, in the order in which they are, by the names of
@@ -115,7 +115,7 @@ class Prediction:
     comparison: Comparison | None = None
     band: Band | None = None
     nearest: tuple[Neighbour, ...] = ()
-    remarks: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     limit_states: dict[str, float] | None = None
 
     def score(self, name: str) -> float:
@@ -247,8 +247,8 @@ def predict(
             raise InputError(f"{row.error}; or give its path as displacement=")
         if row.status == "failed":
             raise InputError(f"{specimens.name}: {row.error}")
-        if row.remarks:
-            warn(f"{specimens.name}: {'; '.join(row.remarks)}")
+        if row.warnings:
+            warn(f"{specimens.name}: {'; '.join(row.warnings)}")
         return row
     if isinstance(specimens, _PATH):
         specimens = read_specimens(specimens).with_history()
@@ -311,7 +311,7 @@ def _row(
         if row.status == "completed" and comparison.path_fraction < 1:
             row = replace(row, status="stopped", error=f"the forces end at row {comparison.rows}")
     note = "; ".join(dict.fromkeys(str(warning.message) for warning in caught))
-    return replace(row, note=note, remarks=getattr(column, "outside", ())), column
+    return replace(row, note=note, warnings=getattr(column, "warnings", ())), column
 
 
 # ---- tables -------------------------------------------------------------------------------------
@@ -347,7 +347,7 @@ def _scores(row: Prediction) -> dict[str, Any]:
         "seconds": row.seconds,
         "error": row.error,
         "note": row.note,
-        "outside": "; ".join(row.remarks),
+        "warnings": "; ".join(row.warnings),
     }
     if row.limit_states is not None:
         record |= {f"drift_{name}": row.limit_states.get(name, math.nan) for name in _STATES}

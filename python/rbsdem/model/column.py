@@ -458,7 +458,7 @@ class Column:
     def gauge(self, joint: int) -> Gauge | None:
         """Return parts and lengths of the layers of a joint; None if not known.
 
-        It is known of the hinge of a column that was made from its drawing.
+        It is known of the hinge of a column that was made from its drawing, a `LayeredColumn`.
 
         Parameters
         ----------

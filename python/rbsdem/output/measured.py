@@ -124,7 +124,7 @@ def tests_table(rows: Iterable[Prediction]) -> Table:
     """Return a row for each test: scores, share within the band, remarks."""
     shown: list[Record] = []
     for row in rows:
-        remark = f"outside the tests: {'; '.join(row.remarks)}" if row.remarks else ""
+        remark = f"outside the tests: {'; '.join(row.warnings)}" if row.warnings else ""
         if row.status != "completed":
             remark = f"{row.status}: {row.error}"
         line: Record = {"Test": row.specimen.name, "Failure": row.specimen.failure_mode or ""}
@@ -175,7 +175,7 @@ def numbers_table(row: Prediction) -> Table:
             nrmse, peak = (one.prediction.score(score) for score in ("nrmse", "peak_ratio"))
             text += f" (NRMSE {nrmse:.3g}, peak {peak:.3g})"
         rows.append({name: text})
-    rows += [{name: f"Outside the tests: {remark}"} for remark in row.remarks]
+    rows += [{name: f"Outside the tests: {remark}"} for remark in row.warnings]
     return table(data_frame(rows))
 
 

@@ -162,7 +162,7 @@ class Band(Tabular):
         Largest force [N], work [J], drift ratio at which 20 % of the strength is lost.
     near_shear : float
         How near the column is to its shear strength, 0 to 1, on which the width depends.
-    remarks : tuple of str
+    warnings : tuple of str
         Where the column is outside the range of the tests that the parameters were fitted to.
     """
 
@@ -178,7 +178,7 @@ class Band(Tabular):
     energy: Interval
     drift_at_loss: Interval
     near_shear: float
-    remarks: tuple[str, ...]
+    warnings: tuple[str, ...]
 
     def __repr__(self) -> str:
         rows, near = self.displacement.size, self.near_shear
@@ -296,7 +296,7 @@ def band(
     Returns
     -------
     Band
-        Prediction, band, intervals of largest force, work and drift at 20 % loss, remarks;
+        Prediction, band, intervals of largest force, work and drift at 20 % loss, warnings;
         `rbsdem.plot.band` draws it.
 
     Raises
@@ -315,7 +315,7 @@ def band(
     number = _arguments.integer(samples, "samples")
     if not LEAST <= number <= MOST:
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
-    remarks = column.outside
+    warnings = column.warnings
     if scatter is None:
         scatter, made = scatter_of_tests(), column._drawing.parameters
         if not has_bands(made.version):
@@ -324,19 +324,19 @@ def band(
                 f"bands for {VERSION}, or give scatter="
             )
         if made.own:
-            remarks = (*remarks, f"the band is that of {VERSION}, whose parameters changed")
+            warnings = (*warnings, f"the band is that of {VERSION}, whose parameters changed")
     d = _arguments.finite_vector(displacement, "displacement")
     if d.size < 2 or not np.any(np.diff(d)):
         raise InputError("band: the displacement does not change; give a path")
-    if remarks:
-        warn(f"band: {'; '.join(remarks)}")
+    if warnings:
+        warn(f"band: {'; '.join(warnings)}")
     force = path_force(column, d)
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
     place = Place(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
-    wider, *powers = scatter.outside if column.outside else (1.0, 1.0, 1.0, 1.0)
+    wider, *powers = scatter.outside if column.warnings else (1.0, 1.0, 1.0, 1.0)
     widen = wider * between(scatter.force, place)
     values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
@@ -355,7 +355,7 @@ def band(
             values["drift"], scatter.drift, place, powers[2], float(np.max(np.abs(d))) / height
         ),
         near_shear=near,
-        remarks=remarks,
+        warnings=warnings,
     )
 
 

@@ -350,9 +350,9 @@ def _layered(
         drawing.check(model_parameters.own)
     made = LayeredColumn(height, n=drawing.n, drawing=drawing, **drawing.made, **common)
     note = axial_load_note(axial_load, section)
-    remarks = [note, *made.outside] if note else made.outside
-    if remarks:
-        warn("; ".join(remarks))
+    warnings = [note, *made.warnings] if note else made.warnings
+    if warnings:
+        warn("; ".join(warnings))
     return made
 
 

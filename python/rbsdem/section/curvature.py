@@ -153,7 +153,7 @@ def carried_load(value: Any, section: Section, *, tension: bool = True) -> float
     raise InputError(f"axial_load = {load:g} N {fault}; compression is positive: give {ends}")
 
 
-def outside(section: Section, height: float, axial_load: float) -> tuple[str, ...]:
+def range_warnings(section: Section, height: float, axial_load: float) -> tuple[str, ...]:
     """Return where a column is outside the range of the tests that the model was fitted to.
 
     Parameters

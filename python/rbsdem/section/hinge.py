@@ -69,7 +69,7 @@ class Strips:
     tie_ratio: float
 
 
-def cut(
+def strips_of(
     section: Section, number: int, *, restrained: int | None = None, round_core: bool = False
 ) -> Strips:
     """Cut a section into strips of equal thickness across the direction of loading.
@@ -258,7 +258,7 @@ def hinge_joint(
     if not section.bars:
         raise InputError("the layered model needs a section with longitudinal bars; give bars")
     depth, cylinder, longest = section.depth, section.concrete.fc, _LONGEST_STEEL * length
-    strips = cut(section, _STRIPS, restrained=restrained, round_core=round_core)
+    strips = strips_of(section, _STRIPS, restrained=restrained, round_core=round_core)
     modulus = section.concrete_law["ec"]
     strength = given.concrete_strength * cylinder * (cylinder / 40e6) ** -given.concrete_size
     peak = 0.002 * given.peak_strain
@@ -288,6 +288,7 @@ def hinge_joint(
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     @cache
     def concrete(area: float, stress: float, strain: float, softening: float) -> ConcreteSpring:
+        # The spring of a strip with a strength and the strain at it.
         secant = 1.3 * stress / strain
         return unchecked(
             ConcreteSpring,

@@ -26,7 +26,7 @@ from rbsdem.model.springs import (
     check_springs,
     unchecked,
 )
-from rbsdem.section.curvature import axial_load_note, outside
+from rbsdem.section.curvature import axial_load_note, range_warnings
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import FACTORS, ModelParameters, table
 from rbsdem.section.shear import shear_spring
@@ -117,7 +117,7 @@ class LayeredModel:
             statement += _core.group("parameter", change)
         return statement
 
-    def ends(self, top: str) -> dict[str, Any]:
+    def fields_for(self, top: str) -> dict[str, Any]:
         """Return `made` for a cantilever, or for a column whose top is fixed.
 
         Parameters
@@ -260,11 +260,11 @@ class LayeredColumn(Column):
         if self._is_other:
             return
         before, now = self._drawing, replace(self._drawing, axial_load=axial_load)
-        for name, value in before.ends(self.top).items():
+        for name, value in before.fields_for(self.top).items():
             if getattr(self, name) == value:
-                object.__setattr__(self, name, now.ends(self.top)[name])
+                object.__setattr__(self, name, now.fields_for(self.top)[name])
         object.__setattr__(self, "drawing", now)
-        notes = (axial_load_note(axial_load, now.section), *self.outside)
+        notes = (axial_load_note(axial_load, now.section), *self.warnings)
         if any(notes):
             warn("; ".join(filter(None, notes)))
 
@@ -335,8 +335,8 @@ class LayeredColumn(Column):
         # What a factor makes of several is limited, not refused.
         several = {name: FACTORS[name][0] for name in values if name in FACTORS}
         drawing.check(set(values).difference(several, *several.values()))
-        ends = drawing.ends(self.top)
-        made = {name: value for name, value in ends.items() if not self._kept(name)}
+        fields = drawing.fields_for(self.top)
+        made = {name: value for name, value in fields.items() if not self._kept(name)}
         return replace(self, drawing=drawing, **made)
 
     def gauge(self, joint: int) -> Gauge | None:
@@ -379,10 +379,10 @@ class LayeredColumn(Column):
         return joint_interaction(foot, _CRUSHED * self._drawing.joint.length, rotation, points)
 
     @property
-    def outside(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Where the column is outside the range of the tests that the model was fitted to."""
         # The drawing knows the shear span, whatever the ends of the column are.
-        return outside(self._drawing.section, self._drawing.height, self.axial_load)
+        return range_warnings(self._drawing.section, self._drawing.height, self.axial_load)
 
     @property
     def replaced(self) -> tuple[str, ...]:
@@ -395,7 +395,7 @@ class LayeredColumn(Column):
 
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""
-        return bool(getattr(self, field) != self._drawing.ends(self.top)[field])
+        return bool(getattr(self, field) != self._drawing.fields_for(self.top)[field])
 
     def _groups(self) -> _core.Statement:
         return self._statement + self._drawing.statement()

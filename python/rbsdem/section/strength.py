@@ -269,7 +269,7 @@ class _Block:
             moment -= stress * bar * y
         return load, moment
 
-    def ends(self, strain: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    def extremes(self, strain: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """Return the points of bars that all yield in tension, and of uniform compression."""
         pulled = self.point(0.0, lambda y: np.full(y.shape, -math.inf))
         pressed = self.point(math.inf, lambda y: np.full(y.shape, strain))
@@ -342,7 +342,7 @@ def _aci_318(section: Section, count: int) -> InteractionDiagram:
     yields = steel.fy / steel.es
     axes = _axes(section, ultimate, count, [0.0, yields, yields + 0.003, 0.005])
     rows = [block.point(axis, _aci_strains(section, axis)) for axis in axes]
-    pulled, pressed = block.ends(math.inf)
+    pulled, pressed = block.extremes(math.inf)
     load, moment = np.array([pulled, *rows, pressed]).T
     inner = [-_aci_strains(section, axis)(np.array([outermost]))[0] for axis in axes]
     tension = np.array([math.inf, *inner, -ultimate])
@@ -384,7 +384,7 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
     curves = []
     for concrete_factor, steel_factor in ((1.0, 1.0), (1.0 / 1.5, 1.0 / 1.15)):
         block = _Block(section, concrete_factor * strength * fc, share, steel_factor)
-        pulled, pressed = block.ends(plateau)
+        pulled, pressed = block.extremes(plateau)
         curves.append(np.array([pulled, *(block.point(x, strains(x)) for x in axes), pressed]).T)
     inner = [-strains(x)(np.array([outermost]))[0] for x in axes]
     tension = np.array([math.inf, *inner, -plateau])
