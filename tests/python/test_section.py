@@ -25,7 +25,7 @@ from rbsdem import (
     Ties,
 )
 from rbsdem.section import diagram, moment_curvature
-from rbsdem.section.hinge import cut
+from rbsdem.section.hinge import strips_of
 
 TENSION = ("ts", "bare", "zero")
 
@@ -246,7 +246,7 @@ def test_sizes_of_hollow_sections_in_closed_form():
         assert section.gross_area == pytest.approx(area)
         assert section.inertia == pytest.approx(inertia)
         assert section.web_width == pytest.approx(web)
-        strips = cut(section, 2000)
+        strips = strips_of(section, 2000)
         assert sum(strip.area for strip in strips.core) == pytest.approx(core, rel=1e-9)
         around = [y for y, a, _ in section.bars if a == pytest.approx(pi / 4 * 0.02**2)]
         assert len(around) == section.inner_layout.number
