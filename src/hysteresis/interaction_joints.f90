@@ -81,15 +81,15 @@ contains
    end function rest_of
 
    !> Put the layers of a joint on their next lines along a straight path.
-   subroutine update_branches(springs, i, turn, press)
+   subroutine update_branches(springs, i, rotation_rate, axial_rate)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
       !> Rates of the rotation [rad] and of the axial load [N]
-      real(wp), intent(in) :: turn, press
+      real(wp), intent(in) :: rotation_rate, axial_rate
 
       select type (section => springs%slot(i)%memory)
       type is (fibre_section)
-         call choose_branches(section, turn, press)
+         call choose_branches(section, rotation_rate, axial_rate)
       end select
       call read_plane(springs, i)
    end subroutine update_branches
@@ -166,15 +166,15 @@ contains
 
    !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
    !> Its work is left to the caller.
-   subroutine put_on_plane(springs, i, rotation, axial_load, turn, press, first)
+   subroutine put_on_plane(springs, i, rotation, axial_load, rotation_rate, axial_rate, first)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
-      real(wp), intent(in) :: rotation, axial_load, turn, press
+      real(wp), intent(in) :: rotation, axial_load, rotation_rate, axial_rate
       integer, intent(in) :: first
 
       select type (section => springs%slot(i)%memory)
       type is (fibre_section)
-         call section%put(rotation, axial_load, turn, press, first)
+         call section%put(rotation, axial_load, rotation_rate, axial_rate, first)
       end select
       call read_plane(springs, i)
       springs%d(i) = rotation

@@ -36,11 +36,11 @@ contains
       type(layer_fall), intent(out) :: fall
       type(fibre_section) :: copy
       real(wp) :: begin, gain, most, work, step, next, scale
-      integer :: event, i, way
+      integer :: event, i, direction
 
       copy = section
-      way = section%failure_way
-      if (way == 0) way = merge(-1, 1, section%axial_load >= 0.0_wp)
+      direction = section%failure_direction
+      if (direction == 0) direction = merge(-1, 1, section%axial_load >= 0.0_wp)
       fall%axial_load = section%axial_load
       begin = copy%opening
       scale = carried*(abs(section%axial_load) + section%stiffness*section%largest)
@@ -49,15 +49,15 @@ contains
       do event = 1, 1000 + 1000*copy%count
          ! Every layer on its next branch.
          do i = 1, copy%count
-            call copy%go_on(i, way)
+            call copy%go_on(i, direction)
          end do
          call copy%sum_up()
          ! Force of the layers beyond the load; it grows with their stiffness.
-         gain = way*(tension(copy, 0.0_wp) + copy%axial_load)
+         gain = direction*(tension(copy, 0.0_wp) + copy%axial_load)
          step = no_step
          do i = 1, copy%count
             associate (d => copy%deformation(i))
-               step = min(step, merge(copy%hi(i) - d, d - copy%lo(i), way > 0))
+               step = min(step, merge(copy%hi(i) - d, d - copy%lo(i), direction > 0))
             end associate
          end do
          if (.not. fall%rests .and. abs(copy%opening - begin) > 0.0_wp .and. copy%a > 0.0_wp) then
@@ -65,18 +65,19 @@ contains
             if (-gain <= scale) next = 0.0_wp
             if (next <= step) then
                fall%rests = .true.
-               fall%drop = copy%opening + way*next - begin
+               fall%drop = copy%opening + direction*next - begin
                fall%moment = copy%moment_0 + copy%s*(begin + fall%drop) + copy%q*copy%rotation
-               fall%freed = -fall%axial_load*fall%drop - (work + way*next*tension(copy, 0.5_wp*way*next))
+               fall%freed = -fall%axial_load*fall%drop - &
+                            (work + direction*next*tension(copy, 0.5_wp*direction*next))
             end if
          end if
          most = max(most, gain)
          if (.not. step < no_step) exit
-         work = work + way*step*tension(copy, 0.5_wp*way*step)
-         copy%opening = copy%opening + way*step
+         work = work + direction*step*tension(copy, 0.5_wp*direction*step)
+         copy%opening = copy%opening + direction*step
          copy%largest = max(copy%largest, abs(copy%opening) + copy%reach*abs(copy%rotation))
       end do
-      fall%capacity = fall%axial_load - way*most
+      fall%capacity = fall%axial_load - direction*most
    end subroutine find_fall
 
    !> Force of the layers, tension positive, a way beyond the present opening [N].

@@ -40,20 +40,21 @@ contains
    !> when it comes to the end of its line ahead.
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
-   pure subroutine look_along(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, open, turn, &
-                              least_rate, room, ahead, nearest, least_room, any_unloads, stiffness)
+   pure subroutine look_along(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, opening_rate, &
+                              rotation_rate, &
+                              least_rate, clearance, ahead, nearest, least_clearance, any_unloads, stiffness)
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
-      !> A layer this close to its end is on it, with `room` [m]; -1, 0 or 1 as in `segment`, and 1 where that
-      !> is 0, else 0
+      !> A layer this close to its end is on it, with `clearance` [m]; -1, 0 or 1 as in `segment`, and 1 where
+      !> that is 0, else 0
       real(wp), intent(in) :: slack(n), unload_on_reversal(n), both_ways(n)
-      real(wp), intent(in) :: w, phi, open, turn
+      real(wp), intent(in) :: w, phi, opening_rate, rotation_rate
       !> Rates up to this count as zero; addition to `slack` [m]
-      real(wp), intent(in) :: least_rate, room
+      real(wp), intent(in) :: least_rate, clearance
       !> Ways to the ends, in units of the rates, and the least of them; not above zero if a layer is on the
       !> end that it approaches, or unloads on a reversal
-      real(wp), intent(out) :: ahead(n), nearest, least_room
+      real(wp), intent(out) :: ahead(n), nearest, least_clearance
       !> Whether any layer is on a branch that unloads on reversal
       logical, intent(out) :: any_unloads
       !> sum k v**2
@@ -62,14 +63,14 @@ contains
       integer :: i
 
       nearest = huge(1.0_wp)
-      least_room = huge(1.0_wp)
+      least_clearance = huge(1.0_wp)
       least_both = 1.0_wp
       stiffness = 0.0_wp
       per_least = far_away/(epsilon(1.0_wp)*least_rate)
-      !$omp simd reduction(min:nearest, least_room, least_both) reduction(+:stiffness) &
+      !$omp simd reduction(min:nearest, least_clearance, least_both) reduction(+:stiffness) &
       !$omp private(v, size_v, d, per_v, to_lo, to_hi, still)
       do i = 1, n
-         v = open + y(i)*turn
+         v = opening_rate + y(i)*rotation_rate
          d = w + y(i)*phi
          stiffness = stiffness + k(i)*v*v
          size_v = abs(v)
@@ -80,7 +81,7 @@ contains
          to_hi = (hi(i) - d)*per_v
          ahead(i) = max(to_lo, to_hi) + still
          nearest = min(nearest, ahead(i))
-         least_room = min(least_room, min(ahead(i) - (room + slack(i))*abs(per_v), &
+         least_clearance = min(least_clearance, min(ahead(i) - (clearance + slack(i))*abs(per_v), &
                                           unload_on_reversal(i)*v + both_ways(i) + still))
          least_both = min(least_both, both_ways(i))
       end do
@@ -88,9 +89,9 @@ contains
    end subroutine look_along
 
    !> When a layer was last at the end of its line behind: the ways back, as in `look_along`.
-   pure subroutine look_back(n, y, lo, hi, w, phi, open, turn, least_rate, behind, nearest)
+   pure subroutine look_back(n, y, lo, hi, w, phi, opening_rate, rotation_rate, least_rate, behind, nearest)
       integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), lo(n), hi(n), w, phi, open, turn, least_rate
+      real(wp), intent(in) :: y(n), lo(n), hi(n), w, phi, opening_rate, rotation_rate, least_rate
       !> Ways back, in units of the rates, and the least of them
       real(wp), intent(out) :: behind(n), nearest
       real(wp) :: v, size_v, d, per_v, per_least
@@ -100,7 +101,7 @@ contains
       per_least = far_away/(epsilon(1.0_wp)*least_rate)
       !$omp simd reduction(min:nearest) private(v, size_v, d, per_v)
       do i = 1, n
-         v = open + y(i)*turn
+         v = opening_rate + y(i)*rotation_rate
          d = w + y(i)*phi
          size_v = abs(v)
          per_v = 1.0_wp/sign(max(size_v, least_rate), v)

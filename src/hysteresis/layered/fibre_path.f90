@@ -22,65 +22,66 @@ contains
    subroutine go(self, rotation, axial_load, work)
       type(fibre_section), intent(inout) :: self
       real(wp), intent(in) :: rotation, axial_load
-      !> Work of the moment along the way, to be added to [J]
+      !> Work of the moment along the path, to be added to [J]
       real(wp), intent(inout), optional :: work
-      real(wp) :: begin(2), way(2), here, before(2)
+      real(wp) :: begin(2), change(2), share, before(2)
       integer :: event
       logical :: arrives
 
       begin = [self%rotation, self%axial_load]
-      way = [rotation + self%rest, axial_load] - begin
-      if (.not. any(abs(way) > 0.0_wp)) return
-      here = 0.0_wp
+      change = [rotation + self%rest, axial_load] - begin
+      if (.not. any(abs(change) > 0.0_wp)) return
+      share = 0.0_wp
       do event = 1, 1000 + 1000*self%count
-         call choose_branches(self, way(1), way(2))
+         call choose_branches(self, change(1), change(2))
          if (self%failed) return
          before = [self%rotation, self%moment]
-         arrives = self%ends%ahead >= 1.0_wp - here
+         arrives = self%ends%ahead >= 1.0_wp - share
          if (arrives) then
-            call self%place(rotation + self%rest, axial_load, 1.0_wp - here, 0)
+            call self%move_to(rotation + self%rest, axial_load, 1.0_wp - share, 0)
          else
-            associate (there => here + self%ends%ahead)
-               call self%place(begin(1) + there*way(1), begin(2) + there*way(2), self%ends%ahead, &
+            associate (next => share + self%ends%ahead)
+               call self%move_to(begin(1) + next*change(1), begin(2) + next*change(2), self%ends%ahead, &
                                self%ends%first_ahead)
             end associate
          end if
          if (present(work)) work = work + 0.5_wp*(before(2) + self%moment)*(self%rotation - before(1))
          if (arrives) return
-         here = here + self%ends%ahead
+         share = share + self%ends%ahead
       end do
       self%failed = .true.
    end subroutine go
 
    !> Put every layer on its branch along a straight path from the present point, and find
    !> the length of the path on these branches.
-   subroutine choose_branches(self, turn, press)
+   subroutine choose_branches(self, rotation_rate, axial_rate)
       type(fibre_section), intent(inout) :: self
       !> Rates of the rotation [rad] and of the axial load [N]
-      real(wp), intent(in) :: turn, press
-      real(wp) :: least_room, least_rate, room, v
+      real(wp), intent(in) :: rotation_rate, axial_rate
+      real(wp) :: least_clearance, least_rate, clearance, v
       integer :: pass, i
 
       self%failed = .false.
-      self%turn = turn
-      self%press = press
+      self%rotation_rate = rotation_rate
+      self%axial_rate = axial_rate
       ! Mostly one layer has come to its end, and all others have room.
       if (self%on_end > 0) call leave_end(self)
       do pass = 1, most_passes
          if (.not. self%a > no_stiffness*self%stiffness) exit
-         self%open = -(self%s*turn + press)/self%a
-         call look_ahead(self, least_room)
-         if (least_room > 0.0_wp) then
+         self%opening_rate = -(self%s*rotation_rate + axial_rate)/self%a
+         call look_ahead(self, least_clearance)
+         if (least_clearance > 0.0_wp) then
             call set_ends(self)
             return
          end if
          ! All layers without room leave their branches.
-         least_rate = self%least_rate(self%open, self%turn)
-         room = self%room_in_digits()
+         least_rate = self%least_rate(self%opening_rate, self%rotation_rate)
+         clearance = self%end_tolerance()
          do i = 1, self%count
-            v = self%open + self%y(i)*self%turn
+            v = self%opening_rate + self%y(i)*self%rotation_rate
             if (abs(v) <= least_rate) cycle
-            if (self%unload_on_reversal(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= room + self%slack(i)) then
+            if (self%unload_on_reversal(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= clearance + &
+                self%slack(i)) then
                call self%leave(i, merge(1, -1, v > 0.0_wp))
             end if
          end do
@@ -88,7 +89,7 @@ contains
       end do
       call weigh_both_ways(self)
       if (self%failed) return
-      call look_ahead(self, least_room)
+      call look_ahead(self, least_clearance)
       call set_ends(self)
    end subroutine choose_branches
 
@@ -96,31 +97,32 @@ contains
    subroutine leave_end(self)
       type(fibre_section), intent(inout) :: self
       real(wp) :: v
-      integer :: i, way
+      integer :: i, direction
 
       if (.not. self%a > no_stiffness*self%stiffness) return
       i = self%on_end
-      self%open = -(self%s*self%turn + self%press)/self%a
-      v = self%open + self%y(i)*self%turn
-      if (.not. abs(v) > self%least_rate(self%open, self%turn)) return
-      way = merge(1, -1, v > 0.0_wp)
+      self%opening_rate = -(self%s*self%rotation_rate + self%axial_rate)/self%a
+      v = self%opening_rate + self%y(i)*self%rotation_rate
+      if (.not. abs(v) > self%least_rate(self%opening_rate, self%rotation_rate)) return
+      direction = merge(1, -1, v > 0.0_wp)
       associate (branch => self%branch(i), d => self%deformation(i))
-         if (abs(branch%end_toward(way) - d) > abs(branch%end_toward(-way) - d)) return
+         if (abs(branch%end_toward(direction) - d) > abs(branch%end_toward(-direction) - d)) return
       end associate
-      call self%leave(i, way)
+      call self%leave(i, direction)
       call self%sum_up()
    end subroutine leave_end
 
    !> Ways of all layers to the ends of their branches.
-   pure subroutine look_ahead(self, least_room)
+   pure subroutine look_ahead(self, least_clearance)
       type(fibre_section), intent(inout) :: self
       !> Not above zero if a layer has none
-      real(wp), intent(out) :: least_room
+      real(wp), intent(out) :: least_clearance
 
       call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%unload_on_reversal, &
-                      self%both_ways, self%opening, self%rotation, self%open, self%turn, &
-                      self%least_rate(self%open, self%turn), self%room_in_digits(), self%ahead, &
-                      self%ends%ahead, least_room, self%ends%unload_on_reversal, self%ends%stiffness)
+                      self%both_ways, self%opening, self%rotation, self%opening_rate, self%rotation_rate, &
+                      self%least_rate(self%opening_rate, self%rotation_rate), self%end_tolerance(), &
+                                      self%ahead, &
+                      self%ends%ahead, least_clearance, self%ends%unload_on_reversal, self%ends%stiffness)
    end subroutine look_ahead
 
    !> Length of the chosen path, ahead and back, until a layer reaches the end of its branch.
@@ -142,8 +144,10 @@ contains
             ends%ahead = unbounded
          end if
          if (ends%unload_on_reversal) return
-         call look_back(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, self%open, &
-                        self%turn, self%least_rate(self%open, self%turn), self%behind, ends%behind)
+         call look_back(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, &
+                        self%opening_rate, &
+                        self%rotation_rate, self%least_rate(self%opening_rate, self%rotation_rate), &
+                                                            self%behind, ends%behind)
          if (ends%behind < beyond) then
             do i = 1, self%count
                if (self%behind(i) <= ends%behind) exit
@@ -179,12 +183,12 @@ contains
             m = m + 1
             order(m) = i
          end if
-         corner(i) = -self%y(i)*self%turn
+         corner(i) = -self%y(i)*self%rotation_rate
       end do
       call order_by(corner, order(:m))
-      wanted = -self%press
+      wanted = -self%axial_rate
       ! Layers without stiffness open as those do that have a little hardening.
-      free = -self%centre*self%turn
+      free = -self%centre*self%rotation_rate
       found = .false.
       best = 0.0_wp
       do j = 0, m
@@ -196,7 +200,7 @@ contains
          if (slope > no_stiffness*self%stiffness) then
             x = at + (wanted - value)/slope
          else if (abs(slope) <= no_stiffness*self%stiffness .and. abs(value - wanted) <= &
-                  no_stiffness*(abs(wanted) + self%stiffness*self%reach*abs(self%turn))) then
+                  no_stiffness*(abs(wanted) + self%stiffness*self%reach*abs(self%rotation_rate))) then
             x = free
             if (j > 0) x = max(x, at)
             if (j < m) x = min(x, corner(order(j + 1)))
@@ -210,19 +214,19 @@ contains
             next_at = corner(order(j + 1))
             if (x > next_at + 1.0e-14_wp*abs(next_at)) cycle
          end if
-         if (found .and. abs(x - self%open) >= abs(best - self%open)) cycle
+         if (found .and. abs(x - self%opening_rate) >= abs(best - self%opening_rate)) cycle
          found = .true.
          best = x
       end do
       if (.not. found) then
          self%failed = .true.
-         self%failure_way = merge(-1, 1, value_at(free) > wanted)
+         self%failure_direction = merge(-1, 1, value_at(free) > wanted)
          return
       end if
-      self%open = best
+      self%opening_rate = best
       do i = 1, self%count
-         rate = best + self%y(i)*self%turn
-         if (abs(rate) <= self%least_rate(best, self%turn)) cycle
+         rate = best + self%y(i)*self%rotation_rate
+         if (abs(rate) <= self%least_rate(best, self%rotation_rate)) cycle
          call self%go_on(i, merge(1, -1, rate > 0.0_wp))
       end do
       call self%sum_up()
@@ -250,7 +254,7 @@ contains
 
          total = 0.0_wp
          do p = 1, self%count
-            v = x + self%y(p)*self%turn
+            v = x + self%y(p)*self%rotation_rate
             total = total + merge(opening(p), closing(p), v > 0.0_wp)*v
          end do
       end function value_at
@@ -258,16 +262,16 @@ contains
    end subroutine weigh_both_ways
 
    !> Slope of the branch on which a layer would continue in a direction. It is moved there and back.
-   real(wp) function slope_ahead(self, i, way) result(k)
+   real(wp) function slope_ahead(self, i, direction) result(k)
       type(fibre_section), intent(inout) :: self
-      integer, intent(in) :: i, way
+      integer, intent(in) :: i, direction
       integer :: on_end
 
       k = self%k(i)
-      if (.not. self%must_leave(i, way)) return
+      if (.not. self%must_leave(i, direction)) return
       on_end = self%on_end
       call self%save_layer(i)
-      call self%go_on(i, way)
+      call self%go_on(i, direction)
       k = self%k(i)
       call self%restore_layer(i)
       self%on_end = on_end

@@ -70,12 +70,12 @@ module rbs_hysteresis_layered_fibre_section
       !> Moment of the layers [N m]
       real(wp) :: moment = 0.0_wp
       !> The path that the lines were chosen for: rates of rotation, axial load and opening; its length
-      real(wp) :: turn = 0.0_wp, press = 0.0_wp, open = 0.0_wp
+      real(wp) :: rotation_rate = 0.0_wp, axial_rate = 0.0_wp, opening_rate = 0.0_wp
       type(path_ends) :: ends
       !> Whether no equilibrium of the axial load lies ahead, and the direction of the joint then: -1 it
       !> closes (compression is lost), +1 it opens
       logical :: failed = .false.
-      integer :: failure_way = 0
+      integer :: failure_direction = 0
    end type section_state
 
    type, extends(section_state) :: fibre_section
@@ -120,9 +120,9 @@ module rbs_hysteresis_layered_fibre_section
       procedure :: leave
       procedure :: must_leave
       procedure :: go_on
-      procedure :: room_in_digits
+      procedure :: end_tolerance
       procedure :: least_rate
-      procedure :: place
+      procedure :: move_to
       procedure :: put
       procedure :: opening_at
       procedure :: read_plane
@@ -210,11 +210,11 @@ contains
    end function deformation
 
    !> A layer passes the end of its branch, or unloads on a reversal. `sum_up` is left to the caller.
-   subroutine leave(self, i, way)
+   subroutine leave(self, i, direction)
       class(fibre_section), intent(inout) :: self
       integer, intent(in) :: i
       !> +1: it opens, -1: it closes
-      integer, intent(in) :: way
+      integer, intent(in) :: direction
 
       if (self%marked) then
          if (.not. self%is_kept(i)) then
@@ -227,59 +227,59 @@ contains
       end if
       if (self%branch(i)%unload_on_reversal > 0) self%branch(i)%lo = self%deformation(i)
       if (self%branch(i)%unload_on_reversal < 0) self%branch(i)%hi = self%deformation(i)
-      call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, self%branch(i), way)
+      call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, self%branch(i), direction)
       call put_branch(self, i)
       if (i == self%on_end) self%on_end = 0
    end subroutine leave
 
    !> Whether a layer that moves in a direction leaves its branch at once: it unloads on the reversal, or is
    !> at the end within the round-off of its deformation.
-   pure logical function must_leave(self, i, way)
+   pure logical function must_leave(self, i, direction)
       class(fibre_section), intent(in) :: self
-      integer, intent(in) :: i, way
+      integer, intent(in) :: i, direction
       real(wp) :: far
 
-      must_leave = self%branch(i)%unload_on_reversal == -way
+      must_leave = self%branch(i)%unload_on_reversal == -direction
       if (must_leave) return
-      far = self%branch(i)%end_toward(way)
-      must_leave = way*(far - self%deformation(i)) <= self%room_in_digits() + on_the_end*abs(far)
+      far = self%branch(i)%end_toward(direction)
+      must_leave = direction*(far - self%deformation(i)) <= self%end_tolerance() + on_the_end*abs(far)
    end function must_leave
 
    !> Put a layer that moves in a direction on its next branch. `sum_up` is left to the caller.
-   subroutine go_on(self, i, way)
+   subroutine go_on(self, i, direction)
       class(fibre_section), intent(inout) :: self
-      integer, intent(in) :: i, way
+      integer, intent(in) :: i, direction
       integer :: branches
 
       do branches = 1, most_branches
-         if (.not. self%must_leave(i, way)) exit
-         call self%leave(i, way)
+         if (.not. self%must_leave(i, direction)) exit
+         call self%leave(i, direction)
       end do
    end subroutine go_on
 
    !> Uncertainty of a deformation by the last digits of opening and rotation [m].
-   pure real(wp) function room_in_digits(self)
+   pure real(wp) function end_tolerance(self)
       class(fibre_section), intent(in) :: self
 
-      room_in_digits = on_the_end*(abs(self%opening) + self%reach*abs(self%rotation)) &
+      end_tolerance = on_the_end*(abs(self%opening) + self%reach*abs(self%rotation)) &
                        + round_off*self%largest
-   end function room_in_digits
+   end function end_tolerance
 
    !> Rates of layers that are round-off, as the opening and the rotation move.
-   pure real(wp) function least_rate(self, open, turn)
+   pure real(wp) function least_rate(self, opening_rate, rotation_rate)
       class(fibre_section), intent(in) :: self
-      real(wp), intent(in) :: open, turn
+      real(wp), intent(in) :: opening_rate, rotation_rate
 
-      least_rate = max(no_rate*(abs(open) + self%reach*abs(turn)), least_speed)
+      least_rate = max(no_rate*(abs(opening_rate) + self%reach*abs(rotation_rate)), least_speed)
    end function least_rate
 
    !> Move the joint along the chosen path to a rotation (from zero) and an axial load on the present
    !> branches.
-   pure subroutine place(self, rotation, axial_load, way, first)
+   pure subroutine move_to(self, rotation, axial_load, distance, first)
       class(fibre_section), intent(inout) :: self
       real(wp), intent(in) :: rotation, axial_load
-      !> Way in units of the rates, negative: back
-      real(wp), intent(in) :: way
+      !> In units of the rates, negative: back
+      real(wp), intent(in) :: distance
       !> The layer that comes to the end of its branch, 0 for none
       integer, intent(in) :: first
 
@@ -289,11 +289,11 @@ contains
       if (self%a > firm*self%stiffness) then
          self%opening = -(axial_load + (self%force_0 + self%s*rotation))/self%a
       else
-         self%opening = self%opening + self%open*way
+         self%opening = self%opening + self%opening_rate*distance
       end if
       self%largest = max(self%largest, abs(self%opening) + self%reach*abs(rotation))
       self%moment = self%moment_0 + (self%s*self%opening + self%q*rotation)
-   end subroutine place
+   end subroutine move_to
 
    !> Opening of the joint at the middle at a rotation and an axial load on the present branches [m].
    pure real(wp) function opening_at(self, rotation, axial_load)
@@ -306,22 +306,24 @@ contains
             opening_at = self%opening - (self%s*turned + (axial_load - self%axial_load))/self%a
          else
             opening_at = self%opening
-            if (abs(self%turn) > 0.0_wp) opening_at = opening_at + self%open/self%turn*turned
+            if (abs(self%rotation_rate) > 0.0_wp) then
+               opening_at = opening_at + self%opening_rate/self%rotation_rate*turned
+            end if
          end if
       end associate
    end function opening_at
 
    !> Rate of the opening on the present branches.
-   pure real(wp) function rate_of_opening(self, turn, press) result(open)
+   pure real(wp) function rate_of_opening(self, rotation_rate, axial_rate) result(opening_rate)
       type(fibre_section), intent(in) :: self
-      real(wp), intent(in) :: turn, press
+      real(wp), intent(in) :: rotation_rate, axial_rate
 
       if (self%a > no_stiffness*self%stiffness) then
-         open = -(self%s*turn + press)/self%a
-      else if (abs(self%turn) > 0.0_wp) then
-         open = self%open/self%turn*turn
+         opening_rate = -(self%s*rotation_rate + axial_rate)/self%a
+      else if (abs(self%rotation_rate) > 0.0_wp) then
+         opening_rate = self%opening_rate/self%rotation_rate*rotation_rate
       else
-         open = self%open
+         opening_rate = self%opening_rate
       end if
    end function rate_of_opening
 
@@ -338,8 +340,8 @@ contains
       centre = self%centre
       if (self%a > no_stiffness*self%stiffness) then
          centre = self%s/self%a
-      else if (abs(self%turn) > 0.0_wp) then
-         centre = -self%open/self%turn
+      else if (abs(self%rotation_rate) > 0.0_wp) then
+         centre = -self%opening_rate/self%rotation_rate
       end if
       stiffness = 0.0_wp
       do i = 1, self%count
@@ -349,36 +351,36 @@ contains
    end subroutine read_plane
 
    !> Layers at a point of the present branches, and how they move along a path with given rates.
-   pure subroutine look_at(self, rotation, axial_load, turn, press, d, v)
+   pure subroutine look_at(self, rotation, axial_load, rotation_rate, axial_rate, d, v)
       class(fibre_section), intent(in) :: self
       !> Rotation of the joint, counted from `rest`; axial load, and rates
-      real(wp), intent(in) :: rotation, axial_load, turn, press
+      real(wp), intent(in) :: rotation, axial_load, rotation_rate, axial_rate
       !> Deformations [m] and their rates (count)
       real(wp), intent(out), contiguous :: d(:), v(:)
-      real(wp) :: open
+      real(wp) :: opening_rate
 
-      open = rate_of_opening(self, turn, press)
+      opening_rate = rate_of_opening(self, rotation_rate, axial_rate)
       d = self%opening_at(rotation, axial_load) + self%y*(rotation + self%rest)
-      v = open + self%y*turn
-      where (abs(v) <= self%least_rate(open, turn)) v = 0.0_wp
+      v = opening_rate + self%y*rotation_rate
+      where (abs(v) <= self%least_rate(opening_rate, rotation_rate)) v = 0.0_wp
    end subroutine look_at
 
    !> Put the joint on a point of its present branches that lies ahead on a path with given rates. Its work is
    !> left to the caller.
-   pure subroutine put(self, rotation, axial_load, turn, press, first)
+   pure subroutine put(self, rotation, axial_load, rotation_rate, axial_rate, first)
       class(fibre_section), intent(inout) :: self
       !> Rotation of the joint, counted from `rest`; axial load, and rates
-      real(wp), intent(in) :: rotation, axial_load, turn, press
+      real(wp), intent(in) :: rotation, axial_load, rotation_rate, axial_rate
       !> The layer that comes exactly to the end of its branch, 0 for none
       integer, intent(in) :: first
       real(wp) :: opening
 
       opening = self%opening_at(rotation, axial_load)
-      self%open = rate_of_opening(self, turn, press)
-      self%turn = turn
-      self%press = press
+      self%opening_rate = rate_of_opening(self, rotation_rate, axial_rate)
+      self%rotation_rate = rotation_rate
+      self%axial_rate = axial_rate
       self%opening = opening
-      call self%place(rotation + self%rest, axial_load, 0.0_wp, first)
+      call self%move_to(rotation + self%rest, axial_load, 0.0_wp, first)
    end subroutine put
 
    !> Mark the present state, to which `restore` returns. Only layers that change their branches are copied.
@@ -445,13 +447,14 @@ contains
       call stream%items(self%rest, self%rotation, self%axial_load, self%opening)
       call stream%item(self%on_end)
       call stream%items(self%largest, self%a, self%s, self%q, self%force_0, self%moment_0, self%moment)
-      call stream%items(self%turn, self%press, self%open, self%ends%ahead, self%ends%behind)
+      call stream%items(self%rotation_rate, self%axial_rate, self%opening_rate, self%ends%ahead, &
+                        self%ends%behind)
       call stream%item(self%ends%first_ahead)
       call stream%item(self%ends%first_behind)
       call stream%item(self%ends%unload_on_reversal)
       call stream%item(self%ends%stiffness)
       call stream%item(self%failed)
-      call stream%item(self%failure_way)
+      call stream%item(self%failure_direction)
       do i = 1, self%count
          call self%branch(i)%serialize(stream)
          call self%slot(i)%memory%serialize(stream)

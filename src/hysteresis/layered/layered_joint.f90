@@ -103,7 +103,7 @@ contains
       type(fibre_section), intent(inout) :: section
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
-      real(wp) :: rotation, way
+      real(wp) :: rotation, distance
       integer :: first
 
       rotation = branch%end_toward(direction) + section%rest
@@ -112,11 +112,12 @@ contains
          branch = segment(d0=branch%d0, f0=branch%f0)
          return
       end if
-      way = section%turn*(rotation - section%rotation)
-      first = merge(section%ends%first_ahead, section%ends%first_behind, direction*section%turn > 0.0_wp)
+      distance = section%rotation_rate*(rotation - section%rotation)
+      first = merge(section%ends%first_ahead, section%ends%first_behind, &
+              direction*section%rotation_rate > 0.0_wp)
       ! Reversed somewhere between the ends.
       if (branch%unload_on_reversal == -direction) first = 0
-      call section%place(rotation, section%axial_load, way, first)
+      call section%move_to(rotation, section%axial_load, distance, first)
       call find_branch(section, direction, branch)
    end subroutine leave_branch
 
@@ -152,7 +153,7 @@ contains
    subroutine find_rest(section, branch)
       type(fibre_section), intent(inout) :: section
       type(segment), intent(inout) :: branch
-      real(wp) :: moment, way
+      real(wp) :: moment, distance
       integer :: event, s
 
       do event = 1, most_events
@@ -161,9 +162,9 @@ contains
          s = merge(-1, 1, moment > 0.0_wp)
          if (event == 1) call find_branch(section, s, branch)
          if (section%failed .or. .not. branch%k > 0.0_wp) exit
-         way = -branch%force(section%rotation)/branch%k
-         if (abs(way) <= abs(branch%end_toward(s) - section%rotation)) then
-            call section%place(section%rotation + way, section%axial_load, abs(way), 0)
+         distance = -branch%force(section%rotation)/branch%k
+         if (abs(distance) <= abs(branch%end_toward(s) - section%rotation)) then
+            call section%move_to(section%rotation + distance, section%axial_load, abs(distance), 0)
             exit
          end if
          call leave_branch(section, branch, s)
@@ -222,10 +223,12 @@ contains
       !> Work of the moment, to be added to [J]
       real(wp), intent(inout) :: work
       type(segment), intent(out) :: branch
-      real(wp) :: way
+      real(wp) :: distance
 
-      way = section%turn*(rotation + section%rest - section%rotation)
-      if (abs(way) > 0.0_wp) call section%place(rotation + section%rest, section%axial_load, way, 0)
+      distance = section%rotation_rate*(rotation + section%rest - section%rotation)
+      if (abs(distance) > 0.0_wp) then
+         call section%move_to(rotation + section%rest, section%axial_load, distance, 0)
+      end if
       call go(section, rotation, axial_load, work)
       call find_branch(section, 1, branch)
    end subroutine branch_under
