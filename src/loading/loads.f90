@@ -29,6 +29,8 @@ contains
       class(loads_type), intent(inout) :: self
 
       self%acts = self%signal%acts()
+      ! Axial loads that vary ask more of a method; with a ground that does not rise they are constant.
+      self%acts(vertical) = self%signal(vertical)%is_felt()
    end subroutine find_acting
 
    !> Count times from a begin.
