@@ -10,7 +10,7 @@ module check
    private
 
    public :: unit_test, test_interface, run_suite
-   public :: check_true, check_equal, check_close, check_same, check_contains, check_passed, check_failed
+   public :: check_true, check_equal, check_close, check_same, check_passed
 
    !> Code of a failed check.
    integer, parameter :: check_code = 99
@@ -29,11 +29,6 @@ module check
       character(len=72) :: name
       procedure(test_interface), pointer, nopass :: run => null()
    end type unit_test
-
-   !> Two values are equal.
-   interface check_equal
-      module procedure :: equal_integers, equal_logicals, equal_texts
-   end interface check_equal
 
    !> |actual - expected| <= rtol |expected| + atol.
    interface check_close
@@ -83,7 +78,8 @@ contains
       if (.not. condition) call fail(error, what)
    end subroutine check_true
 
-   subroutine equal_integers(error, actual, expected, what)
+   !> Two integers are equal.
+   subroutine check_equal(error, actual, expected, what)
       type(error_type), allocatable, intent(inout) :: error
       integer, intent(in) :: actual, expected
       character(len=*), intent(in) :: what
@@ -92,28 +88,7 @@ contains
       if (actual == expected) return
       write (text, '(i0, a, i0)') actual, ', expected ', expected
       call fail(error, what//': '//trim(text))
-   end subroutine equal_integers
-
-   subroutine equal_logicals(error, actual, expected, what)
-      type(error_type), allocatable, intent(inout) :: error
-      logical, intent(in) :: actual, expected
-      character(len=*), intent(in) :: what
-      character(len=64) :: text
-
-      if (actual .eqv. expected) return
-      write (text, '(l1, a, l1)') actual, ', expected ', expected
-      call fail(error, what//': '//trim(text))
-   end subroutine equal_logicals
-
-   !> Two texts are equal, with their trailing blanks.
-   subroutine equal_texts(error, actual, expected, what)
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=*), intent(in) :: actual, expected
-      character(len=*), intent(in) :: what
-
-      if (len(actual) == len(expected) .and. actual == expected) return
-      call fail(error, what//": '"//actual//"', expected '"//expected//"'")
-   end subroutine equal_texts
+   end subroutine check_equal
 
    subroutine close_numbers(error, actual, expected, rtol, atol, what)
       type(error_type), allocatable, intent(inout) :: error
@@ -131,7 +106,7 @@ contains
       character(len=*), intent(in) :: what
       integer :: i
 
-      call equal_integers(error, size(actual), size(expected), what//': size')
+      call check_equal(error, size(actual), size(expected), what//': size')
       do i = 1, min(size(actual), size(expected))
          call close_numbers(error, actual(i), expected(i), rtol, atol, what//' '//place(i))
       end do
@@ -153,20 +128,11 @@ contains
       character(len=*), intent(in) :: what
       integer :: i
 
-      call equal_integers(error, size(actual), size(expected), what//': size')
+      call check_equal(error, size(actual), size(expected), what//': size')
       do i = 1, min(size(actual), size(expected))
          call same_numbers(error, actual(i), expected(i), what//' '//place(i))
       end do
    end subroutine same_arrays
-
-   !> A text contains a part.
-   subroutine check_contains(error, text, part, what)
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=*), intent(in) :: text, part
-      character(len=*), intent(in) :: what
-
-      if (index(text, part) == 0) call fail(error, what//": no '"//part//"' in '"//text//"'")
-   end subroutine check_contains
 
    !> A procedure under test has not failed.
    subroutine check_passed(error, outcome, what)
@@ -177,22 +143,6 @@ contains
 
       if (allocated(outcome)) call fail(error, what//' failed: '//outcome%message)
    end subroutine check_passed
-
-   !> A procedure under test has failed with a code and a message that contains `part`.
-   subroutine check_failed(error, outcome, code, part)
-      type(error_type), allocatable, intent(inout) :: error
-      !> Error that the procedure returned
-      type(error_type), allocatable, intent(in) :: outcome
-      integer, intent(in) :: code
-      character(len=*), intent(in) :: part
-
-      if (.not. allocated(outcome)) then
-         call fail(error, "no error, expected one with '"//part//"'")
-         return
-      end if
-      call equal_integers(error, outcome%code, code, 'code of the error')
-      call check_contains(error, outcome%message, part, 'error')
-   end subroutine check_failed
 
    subroutine fail(error, message)
       type(error_type), allocatable, intent(inout) :: error

@@ -706,13 +706,3 @@ def test_summary_says_the_method_and_why(run_cli, case_text, tmp_path):
             assert f"  method                        {method}\n" in printed
         head = (tmp_path / "case.csv").read_text("utf-8").splitlines()[2]
         assert head.endswith(f"method: {used}, kinematics: small")
-
-
-def test_decimals_are_read_to_the_last_bit(tmp_path, case_text):
-    """Short and long ones, as Python reads them."""
-    rng = np.random.default_rng(5)
-    texts = [f"{rng.integers(10**digits)}e{rng.integers(-30, 3)}" for digits in range(1, 17)] * 25
-    texts += [f"0.{rng.integers(10**9):09d}" for _ in range(400)]
-    loading = f"drive = 'displacement', values = {', '.join(texts)}"
-    case = read_back(tmp_path, case_text(loading=loading))
-    assert case.displacement.tolist() == [float(text) for text in texts]
