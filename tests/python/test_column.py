@@ -168,6 +168,47 @@ def test_stable_step_is_safe_for_one_body_with_an_axial_load(ratio, share):
     assert rbsdem.modes(loaded).stable_step <= boundary_of(loaded) * (1 + 1e-6)
 
 
+def edge(omega: float, c: float) -> float:
+    """Return the boundary of q'' + c q' + omega^2 q = 0."""
+    far = -(c / 2 + np.emath.sqrt(c**2 / 4 - omega**2))
+    return boundary(np.array([far, omega**2 / far]))
+
+
+@pytest.mark.filterwarnings("ignore:column. axial_load")
+def test_the_stable_step_with_damping_of_modes():
+    """One ratio and elastic springs: one mode of the highest frequency.
+
+    Otherwise the radius 2.615587 of a half disc over the highest frequency, for ratios to one half.
+    """
+    zeta, n = 0.3, 4
+
+    def step_of(modal, flexure=None, **damping):
+        springs = Elastic(4e8), flexure or Elastic(2e8)
+        given = {"kinematics": "pdelta", "axial_load": -1e6}
+        damping = rbsdem.Damping(modal=modal, **damping)
+        return rbsdem.modes(rbsdem.Column(2.0, 300.0, *springs, n=n, damping=damping, **given))
+
+    modes = step_of([zeta])
+    highest = modes.omega[-1]
+    assert modes.stable_step == pytest.approx(edge(highest, 2 * zeta * highest), rel=1e-10)
+    for other in (
+        step_of([zeta, 0.1]), step_of([zeta], mass=1.0), step_of([zeta], Bilinear(2e8, 1e-3, 0.0))
+    ):  # fmt: skip
+        assert other.stable_step * highest == pytest.approx(2.615587, rel=1e-3)
+
+
+def test_damping_of_the_present_stiffness_ends_with_that_stiffness():
+    """When springs yield, their initial damping -c remains, that of the present one does not."""
+    yields = Bilinear(7.0387e8, 1.296e-4, 8.3185e6), Bilinear(2.5428e8, 3.2e-4, 7.6e6)
+    for tangent in (False, True):
+        damping = rbsdem.Damping(stiffness=7e-4, tangent=tangent)
+        modes = rbsdem.modes(rbsdem.Column(1.6, 614.4, *yields, damping=damping))
+        c = 7e-4 * modes.omega[1] ** 2
+        expected = edge(modes.omega[1], c) if tangent else 2.785293563405282 / c
+        assert modes.stable_step == pytest.approx(expected, rel=1e-6 if tangent else 1e-12)
+    assert modes.stable_step * c > 2.79
+
+
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 0.75, 1.0, 2.0])
 @pytest.mark.parametrize("n", [1, 3])
 def test_stable_step_is_safe_for_springs_that_yield(n, ratio):

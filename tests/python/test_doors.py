@@ -584,19 +584,6 @@ def test_result_without_openings_has_zeros_and_no_axial_forces():
     assert np.array_equal(run.top, [[0.01, 1.6], [-0.01, 1.6]])
 
 
-def test_top_of_the_column_by_the_level_of_kinematics():
-    """Free vibration from a turn of one body: height l, l (1 - th^2/2), l cos(th)."""
-    spring = Elastic(1e6), Elastic(1e4)
-    initial = {"rotation": [0.09], "slip": [0.02]}
-    heights = {"small": 2.0, "pdelta": 2 * (1 - 0.09**2 / 2), "finite": 2 * np.cos(0.09)}
-    for kinematics, height in heights.items():
-        column = rbsdem.Column(2.0, 100.0, *spring, kinematics=kinematics)
-        run = rbsdem.time_history(column, [0.0, 1e-3], initial=initial, method="rk4")
-        angle = np.sin(0.09) if kinematics == "finite" else 0.09
-        assert run.top[0] == pytest.approx([0.02 + 2 * angle, height], rel=1e-14)
-        assert run.top[0, 0] == run.displacement[0]
-
-
 def test_openings_begin_in_equilibrium_or_where_they_are_put():
     spring = Elastic(1e8)
     column = rbsdem.Column(
