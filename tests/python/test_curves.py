@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 import pickle
-import runpy
 from dataclasses import astuple
 
 import numpy as np
 import pytest
-from conftest import REPOSITORY
 
 import rbsdem
 from rbsdem import curves as comparison
@@ -18,8 +16,6 @@ from rbsdem.curves.scores import SCORES
 from rbsdem.errors import InputError
 from rbsdem.springs import Bilinear, Takeda
 
-DEFINITIONS = REPOSITORY.parent / "shared" / "loop_metrics.py"
-THEIRS = {"stiffness_ratio": "k70_ratio", "path_fraction": "done", "nrmse_reached": "nrmse_done"}
 SHEAR = Bilinear(7e8, 1.3e-4, 8e6)
 FLEXURE = Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3)
 
@@ -271,21 +267,6 @@ def test_what_was_not_reached_counts_as_the_largest_force(curves, share):
     if share == 0:
         assert (c.nrmse, len(c.model_cycles), math.isnan(c.model_drift_at_loss)) == (1.0, 0, True)
         assert "none" in str(c)
-
-
-@pytest.mark.skipif(not DEFINITIONS.is_file(), reason="the shared definitions are not at hand")
-@pytest.mark.parametrize("stop", [None, 0, 1, 2, 90, 200, 399])
-def test_scores_are_those_of_the_shared_definitions(curves, stop):
-    reference = runpy.run_path(str(DEFINITIONS))["score"]
-    d, f, m = curves
-    model = m.copy()
-    if stop is not None:
-        model[stop:] = np.nan
-    c = rbsdem.compare((d, model), (d, f))
-    expected = reference(1e3 * d, 1e-3 * f, 1e-3 * model)
-    for name in SCORES:
-        other = THEIRS.get(name, name)
-        assert getattr(c, name) == pytest.approx(expected[other], rel=1e-11, nan_ok=True), name
 
 
 def test_displacement_metrics_of_a_softer_model():
