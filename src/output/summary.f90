@@ -15,6 +15,8 @@ module rbs_output_summary
       !> SI
       character(len=4) :: unit
       real(wp) :: value
+      !> Whether the run has it
+      logical :: applies = .true.
    end type figure_type
 
    !> The largest responses: over all points (static) or all steps (in time), kept or not.
@@ -32,9 +34,7 @@ module rbs_output_summary
       real(wp), allocatable :: storey_drift(:), peak_storey_drift(:)
    contains
       procedure :: update_peak
-      procedure :: update_rotation
       procedure :: update_base_shear
-      procedure :: update_acceleration
    end type peaks_type
 
    type, extends(peaks_type) :: summary_type
@@ -100,15 +100,6 @@ contains
       end if
    end subroutine update_peak
 
-   !> Take the largest rotation of a body into account.
-   pure subroutine update_rotation(self, rotation)
-      class(peaks_type), intent(inout) :: self
-      !> In size [rad]
-      real(wp), intent(in) :: rotation
-
-      self%peak_rotation = max(self%peak_rotation, rotation)
-   end subroutine update_rotation
-
    !> Take a shear force at the base into account.
    pure subroutine update_base_shear(self, shear)
       class(peaks_type), intent(inout) :: self
@@ -117,15 +108,6 @@ contains
 
       if (abs(shear) > abs(self%peak_base_shear)) self%peak_base_shear = shear
    end subroutine update_base_shear
-
-   !> Take an absolute acceleration of the top into account.
-   pure subroutine update_acceleration(self, acceleration)
-      class(peaks_type), intent(inout) :: self
-      !> [m/s2]
-      real(wp), intent(in) :: acceleration
-
-      self%peak_floor_acceleration = max(self%peak_floor_acceleration, abs(acceleration))
-   end subroutine update_acceleration
 
    !> Take the energies of a moment into account; those of the last one stay.
    pure subroutine update_energies(self, energy)
@@ -141,20 +123,21 @@ contains
    pure subroutine get_figures(self, list)
       class(summary_type), intent(in) :: self
       type(figure_type), allocatable, intent(out) :: list(:)
-      logical, allocatable :: applies(:)
       real(wp) :: drop, freed
-      integer :: i
+      logical :: crushed, snapped
 
       drop = merge(self%fall%drop, ieee_value(drop, ieee_quiet_nan), self%fall%rests)
       freed = merge(self%fall%freed, ieee_value(freed, ieee_quiet_nan), self%fall%rests)
+      crushed = self%lost_joint > 0
+      snapped = self%snaps > 0
       list = [figure_type('steps', '', real(self%steps, wp)), &
               figure_type('rows', '', real(self%rows, wp)), &
               figure_type('events', '', real(self%events, wp)), &
               figure_type('time_step', 's', self%time_step), &
               figure_type('stable_step', 's', self%stable_step), &
               figure_type('peak_displacement', 'm', self%peak_displacement), &
-              figure_type('peak_force', 'N', self%peak_force), &
-              figure_type('displacement_at_peak_force', 'm', self%displacement_at_peak), &
+              figure_type('peak_force', 'N', self%peak_force, self%has_force), &
+              figure_type('displacement_at_peak_force', 'm', self%displacement_at_peak, self%has_force), &
               figure_type('peak_base_shear', 'N', self%peak_base_shear), &
               figure_type('input_energy', 'J', self%energy%input), &
               figure_type('spring_energy', 'J', self%energy%spring), &
@@ -162,38 +145,21 @@ contains
               figure_type('energy_residual', 'J', self%residual), &
               figure_type('relative_energy_residual', '', self%residual/max(self%largest, tiny(1.0_wp))), &
               figure_type('peak_rotation', 'rad', self%peak_rotation), &
-              figure_type('peak_floor_acceleration', 'm/s2', self%peak_floor_acceleration), &
+              figure_type('peak_floor_acceleration', 'm/s2', self%peak_floor_acceleration, &
+                          self%peak_floor_acceleration >= 0.0_wp), &
               figure_type('cut_steps', '', real(self%cut_steps, wp)), &
-              figure_type('snaps', '', real(self%snaps, wp)), &
-              figure_type('snap_energy', 'J', self%energy%snaps), &
-              figure_type('snap_member', '', real(self%snap_member, wp)), &
-              figure_type('snap_time', 's', self%snap_time), &
-              figure_type('fallen_member', '', real(self%fallen_member, wp)), &
-              figure_type('snap_backs', '', real(self%snap_backs, wp)), &
-              figure_type('released_energy', 'J', self%released), &
-              figure_type('lost_joint', '', real(self%lost_joint, wp)), &
-              figure_type('lost_axial_load', 'N', self%fall%axial_load), &
-              figure_type('axial_capacity', 'N', self%fall%capacity), &
-              figure_type('fall', 'm', drop), figure_type('fall_energy', 'J', freed)]
-      allocate (applies(size(list)))
-      do i = 1, size(list)
-         select case (list(i)%name)
-         case ('lost_joint', 'lost_axial_load', 'axial_capacity', 'fall', 'fall_energy')
-            applies(i) = self%lost_joint > 0
-         case ('fallen_member')
-            applies(i) = self%fallen_member > 0
-         case ('snaps', 'snap_energy', 'snap_member', 'snap_time')
-            applies(i) = self%snaps > 0
-         case ('snap_backs', 'released_energy')
-            applies(i) = self%snap_backs > 0
-         case ('peak_floor_acceleration')
-            applies(i) = self%peak_floor_acceleration >= 0.0_wp
-         case default
-            applies(i) = .true.
-         end select
-      end do
-      where (index(list%name, 'peak_force') > 0) applies = self%has_force
-      list = pack(list, applies)
+              figure_type('snaps', '', real(self%snaps, wp), snapped), &
+              figure_type('snap_energy', 'J', self%energy%snaps, snapped), &
+              figure_type('snap_member', '', real(self%snap_member, wp), snapped), &
+              figure_type('snap_time', 's', self%snap_time, snapped), &
+              figure_type('fallen_member', '', real(self%fallen_member, wp), self%fallen_member > 0), &
+              figure_type('snap_backs', '', real(self%snap_backs, wp), self%snap_backs > 0), &
+              figure_type('released_energy', 'J', self%released, self%snap_backs > 0), &
+              figure_type('lost_joint', '', real(self%lost_joint, wp), crushed), &
+              figure_type('lost_axial_load', 'N', self%fall%axial_load, crushed), &
+              figure_type('axial_capacity', 'N', self%fall%capacity, crushed), &
+              figure_type('fall', 'm', drop, crushed), figure_type('fall_energy', 'J', freed, crushed)]
+      list = pack(list, list%applies)
    end subroutine get_figures
 
    !> How the run ended, if nothing failed.

@@ -467,7 +467,9 @@ contains
       class(static_path), intent(inout) :: self
 
       call self%structure%rotations(self%springs%d, self%rotation)
-      call self%task%summary%update_rotation(maxval(abs(self%rotation)))
+      associate (summary => self%task%summary)
+         summary%peak_rotation = max(summary%peak_rotation, maxval(abs(self%rotation)))
+      end associate
    end subroutine update_rotation
 
    !> Tell the summary of the present force and displacement.

@@ -162,11 +162,12 @@ contains
          call self%update_peak(displacement, load(lateral))
          self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
       end if
-      if (rotation > self%peak_rotation) call self%update_rotation(rotation)
+      if (rotation > self%peak_rotation) self%peak_rotation = rotation
       if (abs(shear) > abs(self%peak_base_shear)) call self%update_base_shear(shear)
       if (self%feels) then
          call motion%acceleration(springs, q, v, load, self%now)
-         call self%update_acceleration(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal))
+         self%peak_floor_acceleration = max(self%peak_floor_acceleration, &
+            abs(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal)))
       end if
       if (.not. self%watching) return
       if (size(q) == 2 .and. .not. self%opens) then
@@ -260,7 +261,8 @@ contains
          call structure%rotations(v1, self%rotation(:, 4))
          do i = 1, structure%n
             rotation = [self%rotation(i, :2), h*self%rotation(i, 3:)]
-            if (bound_of(rotation) > self%peak_rotation) call self%update_rotation(abs(largest_of(rotation)))
+            if (.not. bound_of(rotation) > self%peak_rotation) cycle
+            self%peak_rotation = max(self%peak_rotation, abs(largest_of(rotation)))
          end do
       end associate
       if (self%watching) call check_within(self, springs, q0, v0, q1, v1, top, h, clock)
