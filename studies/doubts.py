@@ -51,8 +51,7 @@ from rbsdem._files import Tabular, data_frame, save_frame
 from rbsdem._package import unwarned
 from rbsdem._types import Array, DataFrame
 from rbsdem.errors import RbsdemError
-from rbsdem.measured.drawing import checked_specimen, draw
-from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
+from rbsdem.measured.specimens import Specimen, Specimens, checked_specimen, draw, read_specimens
 from rbsdem.measured.tests import MeasuredTest
 from rbsdem.section.curvature import diagram
 

@@ -5,8 +5,6 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from rbsdem.measured.drawing import column as column
-from rbsdem.measured.drawing import draw as draw
 from rbsdem.measured.predict import Prediction as Prediction
 from rbsdem.measured.predict import nearest as nearest
 from rbsdem.measured.predict import predict as predict
@@ -14,6 +12,8 @@ from rbsdem.measured.predict import score_summary as score_summary
 from rbsdem.measured.predict import scores as scores
 from rbsdem.measured.specimens import Specimen as Specimen
 from rbsdem.measured.specimens import Specimens as Specimens
+from rbsdem.measured.specimens import column as column
+from rbsdem.measured.specimens import draw as draw
 from rbsdem.measured.specimens import read_specimens as read_specimens
 from rbsdem.measured.tests import FOLDER_VARIABLE as FOLDER_VARIABLE
 from rbsdem.measured.tests import MeasuredTest as MeasuredTest

@@ -13,7 +13,7 @@ import pytest
 import rbsdem
 from rbsdem import Column, InputError, SolveError
 from rbsdem.calibration import free_names, paths, undetermined
-from rbsdem.calibration.outcome import determine
+from rbsdem.calibration.fit import determine
 from rbsdem.calibration.search import COARSE, POINTS, Misfit, Search, Target
 from rbsdem.curves.metrics import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning

@@ -4,7 +4,7 @@ The parameters are paths into the column, such as ``flexure.k_y``, or those that
 a drawing offers.
 """
 
+from rbsdem.calibration.fit import Calibration as Calibration
 from rbsdem.calibration.fit import calibrate as calibrate
 from rbsdem.calibration.fit import free_names as free_names
 from rbsdem.calibration.fit import undetermined as undetermined
-from rbsdem.calibration.outcome import Calibration as Calibration

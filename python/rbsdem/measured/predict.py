@@ -19,9 +19,14 @@ from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.checks.limit_states import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError, SolveError, warn
-from rbsdem.measured.drawing import check_options, checked_specimen, draw
-from rbsdem.measured.drawing import column as column_of
-from rbsdem.measured.specimens import Specimen, read_specimens
+from rbsdem.measured.specimens import (
+    Specimen,
+    check_options,
+    checked_specimen,
+    draw,
+    read_specimens,
+)
+from rbsdem.measured.specimens import column as column_of
 from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
 from rbsdem.run.bands import Band, features_of, has_bands, numbers

@@ -10,7 +10,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike, Axes, NDArray
-from rbsdem.calibration.outcome import Calibration
+from rbsdem.calibration.fit import Calibration
 from rbsdem.checks.code_values import CodeComparison
 from rbsdem.curves.envelope import Envelope, Method
 from rbsdem.curves.metrics import Curve, loop_pair
