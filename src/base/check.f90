@@ -99,19 +99,18 @@ contains
       real(wp), intent(in) :: values(:)
       character(len=*), intent(in) :: name
       type(error_type), allocatable, intent(out) :: error
+      character(len=64) :: reason
       integer :: i
 
       do i = 1, size(values)
-         if (.not. ieee_is_finite(values(i))) then
-            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '//to_text(size(values))// &
-                             ' is '//to_text(values(i))//'; it must be a finite number')
-            return
-         else if (abs(values(i)) > beyond_meaning) then
-            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
-                             to_text(size(values))//' is '//to_text(values(i))// &
-                             '; products of it would not be finite: check its exponent and unit')
-            return
+         reason = 'it must be a finite number'
+         if (ieee_is_finite(values(i))) then
+            if (abs(values(i)) <= beyond_meaning) cycle
+            reason = 'products of it would not be finite: check its exponent and unit'
          end if
+         call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '//to_text(size(values))// &
+                          ' is '//to_text(values(i))//'; '//trim(reason))
+         return
       end do
    end subroutine check_values
 

@@ -79,6 +79,7 @@ contains
       type(message_list), intent(inout) :: messages
       !> Set to false if the number fails, else unchanged
       logical, intent(inout) :: ok
+      character(len=32) :: number
       logical :: finite
 
       if (ieee_is_finite(x)) then
@@ -91,22 +92,15 @@ contains
       call check_finite(x, name//': '//trim(key%name), trim(unit_for_message()), messages, finite)
       if (finite) then
          if (is_within(x, key%bound)) return
-         call messages%add(trim(name//': '//trim(key%name)//' = '//trim(value_text())//' '// &
-                           unit_for_message())//' '//trim(refusal(key%bound)))
+         number = to_text(x)
+         ! A whole number without an exponent
+         if (key%kind == integer_kind .and. abs(x) < huge(1)) number = to_text(nint(x))
+         call messages%add(trim(name//': '//trim(key%name)//' = '//trim(number)//' '//unit_for_message())// &
+                           ' '//trim(refusal(key%bound)))
       end if
       ok = .false.
 
    contains
-
-      !> A whole number without an exponent.
-      character(len=32) function value_text() result(text)
-
-         if (key%kind == integer_kind .and. abs(x) < huge(1)) then
-            text = to_text(nint(x))
-         else
-            text = to_text(x)
-         end if
-      end function value_text
 
       !> The unit in messages; empty for the dimensions of springs, which are not units.
       pure character(len=16) function unit_for_message() result(unit)

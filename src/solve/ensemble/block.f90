@@ -152,7 +152,9 @@ contains
                task(tasks)%run = i
                task(tasks)%parts = plan%parts(1)
                task(tasks)%scale = run(i)%scale
-               call keep_plan(plan, task(tasks)%plan)
+               ! The plan without its list of intervals
+               task(tasks)%plan = time_plan(dt=plan%dt, method=plan%method, limit=plan%limit, &
+                                            located=plan%located)
                cycle
             end if
             call run_alone(one, shaken, run(i)%scale, plan, error, result(i))
@@ -210,17 +212,6 @@ contains
       is_new = i == 1
       if (.not. is_new) is_new = run(i)%column /= run(i - 1)%column .or. run(i)%motion /= run(i - 1)%motion
    end function is_new
-
-   !> A plan without its list of intervals.
-   subroutine keep_plan(plan, kept)
-      type(time_plan), intent(in) :: plan
-      type(time_plan), intent(inout) :: kept
-
-      kept%dt = plan%dt
-      kept%method = plan%method
-      kept%limit = plan%limit
-      kept%located = plan%located
-   end subroutine keep_plan
 
    subroutine plan_run(column, motion, plan, error)
       type(ensemble_column), intent(in) :: column

@@ -170,8 +170,16 @@ contains
       if (allocated(self%lengths)) call check_sum()
       call check_axial_height()
       call check_inertia()
-      call check_top()
-      call check_footing()
+      if (self%top == 'fixed' .and. self%top_inertia > 0.0_wp) then
+         call messages%add('column: top_inertia = '//to_text(self%top_inertia)//' kg m2 has no effect '// &
+                           "with top = 'fixed', as the top does not turn; remove it")
+      end if
+      if (.not. self%footing .and. &
+          any([self%footing_mass, self%footing_inertia, self%footing_height] > 0.0_wp)) then
+         call messages%add('column: footing_mass, footing_inertia and footing_height need springs '// &
+                           'beneath the footing; give &shear and &flexure with joint = 0 (Python: '// &
+                           'footing=), or remove them')
+      end if
       call self%damping%check('damping', messages)
       call check_damping()
       call check_springs(self%shear, 'shear', in_shear)
@@ -181,28 +189,6 @@ contains
       end if
 
    contains
-
-      !> Values without meaning where the top does not turn.
-      subroutine check_top()
-
-         if (self%top /= 'fixed') return
-         if (self%top_inertia > 0.0_wp) then
-            call messages%add('column: top_inertia = '//to_text(self%top_inertia)//' kg m2 has no effect '// &
-                              "with top = 'fixed', as the top does not turn; remove it")
-         end if
-      end subroutine check_top
-
-      !> A footing needs springs of its own.
-      subroutine check_footing()
-
-         if (self%footing) return
-         if (self%footing_mass > 0.0_wp .or. self%footing_inertia > 0.0_wp .or. &
-             self%footing_height > 0.0_wp) then
-            call messages%add('column: footing_mass, footing_inertia and footing_height need springs '// &
-                              'beneath the footing; give &shear and &flexure with joint = 0 (Python: '// &
-                              'footing=), or remove them')
-         end if
-      end subroutine check_footing
 
       !> A lever of the axial load is known to the second-order moments of joints that do not open.
       subroutine check_axial_height()
