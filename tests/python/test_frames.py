@@ -338,6 +338,17 @@ def test_a_rigid_member_is_a_word(tmp_path):
     assert read.column == portal
     with pytest.raises(rbsdem.InputError, match="all of its members are rigid; give one of them"):
         replace(portal, columns=beam)
+    # A rigid body on springs from the ground: it slides and rocks.
+    slide, rock = 2e6, 3e7
+    nodes = [FrameNode("0", 0, 0, "free", shear=Elastic(slide), flexure=Elastic(rock))]
+    nodes += [FrameNode("0.5", 0, h / 2), FrameNode("1", 0, h, mass=1e4, push_x=1.0)]
+    nodes[0] = replace(nodes[0], support="free", axial_spring=Elastic(1e9))
+    members = [Member("a", "0", "0.5", beam), Member("b", "0.5", "1", beam)]
+    body = Frame(nodes=nodes, members=members, pattern="nodes")
+    soft = 1 / slide + h**2 / rock
+    assert rbsdem.cyclic(body, displacement=[sway]).force[0] * soft == pytest.approx(sway, rel=1e-5)
+    period = 2 * np.pi * np.sqrt(1e4 * soft)
+    assert rbsdem.modes(body).period[0] == pytest.approx(period, rel=1e-5)
 
 
 def test_unknowns_of_matrices_have_names_of_their_own():

@@ -522,26 +522,35 @@ contains
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
-      real(wp) :: clear, whole, stiffest(2)
-      logical :: reported(size(record%kind))
-      integer :: i
+      real(wp) :: clear, whole, stiffest(2), held(3)
+      logical :: reported(size(record%kind)), all_rigid
+      integer :: i, along
 
       reported = .false.
       stiffest = 0.0_wp
+      all_rigid = all([(is_rigid(record%kind(self%member(i)%kind_of), record%spring), &
+                        i=1, size(self%member))])
+      held = 0.0_wp
+      if (all_rigid) held = stiffness_of_nodes(self%node)
+      if (all_rigid .and. .not. any(held > 0.0_wp)) then
+         call messages%add('frame: all of its members are rigid; give one of them stiffness, or springs, '// &
+                           'or a node springs to the ground')
+         return
+      end if
       do i = 1, size(self%member)
          associate (m => self%member(i), kind => record%kind(self%member(i)%kind_of))
             associate (a => self%node(m%node(1)), b => self%node(m%node(2)))
                clear = hypot(b%x - a%x, b%y - a%y) - sum(m%rigid)
+               along = merge(1, 2, abs(b%x - a%x) > abs(b%y - a%y))
             end associate
-            if (clear > 0.0_wp .and. .not. is_rigid(kind, record%spring)) then
+            if (.not. clear > 0.0_wp) cycle
+            if (all_rigid) then
+               stiffest = max(stiffest, [held(along), held(3 - along)*clear**2 + held(3)])
+            else if (.not. is_rigid(kind, record%spring)) then
                stiffest = max(stiffest, stiffness_of(kind, clear))
             end if
          end associate
       end do
-      if (all([(is_rigid(record%kind(self%member(i)%kind_of), record%spring), i=1, size(self%member))])) then
-         call messages%add('frame: all of its members are rigid; give one of them stiffness, or springs')
-         return
-      end if
       do i = 1, size(self%member)
          associate (m => self%member(i))
             associate (a => self%node(m%node(1)), b => self%node(m%node(2)))
@@ -573,6 +582,23 @@ contains
          end associate
       end do
    end subroutine put_kinds
+
+   !> Largest stiffness of springs of nodes along x, upward and in rotation [N/m, N/m, N m].
+   function stiffness_of_nodes(node) result(largest)
+      type(frame_node), intent(in) :: node(:)
+      real(wp) :: largest(3)
+      integer :: i, j
+
+      largest = 0.0_wp
+      do i = 1, size(node)
+         do j = 1, 3
+            associate (spring => node(i)%ground(j))
+               if (spring%rule /= '') largest(j) = max(largest(j), spring%initial_stiffness())
+            end associate
+         end do
+         if (node(i)%panel%rule /= '') largest(3) = max(largest(3), node(i)%panel%initial_stiffness())
+      end do
+   end function stiffness_of_nodes
 
    !> Refuse a kind whose springs were made for members of another length, once each.
    subroutine check_length(m, kind, clear, messages, reported)
