@@ -165,14 +165,14 @@ contains
          call structure_notes(case, structure, notes)
          if (notes%count > 0) answer%text = answer%text//notes%text
       case ('modes')
-         call tell_modes()
+         call answer_modes()
       case default
-         call tell_matrices(request%wants('paper'))
+         call answer_matrices(request%wants('paper'))
       end select
 
    contains
 
-      subroutine tell_modes()
+      subroutine answer_modes()
          type(modes_type) :: modes
          integer, allocatable :: count
          integer :: i, j
@@ -197,9 +197,9 @@ contains
          end do
          answer%rows(3*frame%n + 1, :) = [(frame%work_of(horizontal, modes%shapes(:, i))**2, &
                                            i=1, size(modes%omega))]
-      end subroutine tell_modes
+      end subroutine answer_modes
 
-      subroutine tell_matrices(paper)
+      subroutine answer_matrices(paper)
          logical, intent(in) :: paper
          type(matrices_type) :: matrices
          integer :: i
@@ -213,7 +213,7 @@ contains
          answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
                                 transpose(matrices%geometric), transpose(matrices%damping)], &
                                [size(matrices%unknown), 4*size(matrices%unknown)])
-      end subroutine tell_matrices
+      end subroutine answer_matrices
 
    end subroutine evaluate_structure
 

@@ -148,7 +148,8 @@ contains
          select type (section => springs%slot(joint)%memory)
          type is (fibre_section)
             j = i + section%count - 1
-            call section%look_at(q(joint), axial_load(joint), rate(joint), axial_rate, d(i:j), v(i:j))
+            call section%motion_of_layers(q(joint), axial_load(joint), rate(joint), axial_rate, d(i:j), &
+                                          v(i:j))
             i = j + 1
          end select
       end do

@@ -30,7 +30,7 @@ contains
 
       self%acts = self%signal%acts()
       ! Axial loads that vary ask more of a method; with a ground that does not rise they are constant.
-      self%acts(vertical) = self%signal(vertical)%is_felt()
+      self%acts(vertical) = self%signal(vertical)%is_nonzero()
    end subroutine find_acting
 
    !> Count times from a begin.

@@ -19,7 +19,7 @@ module rbs_loading_signal
       procedure :: at_time
       procedure :: corner_after
       procedure :: acts
-      procedure :: is_felt
+      procedure :: is_nonzero
       procedure :: replace
       procedure, private :: find
    end type signal_type
@@ -34,12 +34,12 @@ contains
    end function acts
 
    !> Whether it has a value that is not zero.
-   pure logical function is_felt(self)
+   pure logical function is_nonzero(self)
       class(signal_type), intent(in) :: self
 
-      is_felt = allocated(self%value)
-      if (is_felt) is_felt = any(abs(self%value) > 0.0_wp)
-   end function is_felt
+      is_nonzero = allocated(self%value)
+      if (is_nonzero) is_nonzero = any(abs(self%value) > 0.0_wp)
+   end function is_nonzero
 
    !> Value at a time; before the first point the first value, after the last the last. At a point it is the
    !> end of the interval before it, from wherever one comes: a run has the same bits with any neighbours.

@@ -106,9 +106,9 @@ contains
    end subroutine visit
 
    !> Follow the diagram along increasing curvatures.
-   subroutine follow_shear(section, asked, curvature, diagram, error)
+   subroutine follow_shear(section, record, curvature, diagram, error)
       type(section_type), intent(in) :: section
-      type(shear_record), intent(in) :: asked
+      type(shear_record), intent(in) :: record
       !> Positive and increasing [1/m]
       real(wp), intent(in) :: curvature(:)
       type(shear_diagram_type), intent(out) :: diagram
@@ -122,7 +122,7 @@ contains
 
       call prepare(here)
       if (allocated(error)) return
-      knee_stiffness = asked%knee*0.5_wp*section%plain%ec*section%shape%area()
+      knee_stiffness = record%knee*0.5_wp*section%plain%ec*section%shape%area()
       allocate (points(size(curvature)))
       count = 0
       do i = 1, size(curvature)
@@ -158,22 +158,22 @@ contains
          type(shear_state), intent(out) :: state
          integer :: i
 
-         model%axial_load = asked%axial_load
-         model%coupled = asked%coupled
+         model%axial_load = record%axial_load
+         model%coupled = record%coupled
          model%flow%section = section
-         call cut_strips(section%shape, section%core_shape, asked%layers, model%flow%section%strips)
-         model%flow%laws = section_laws(section, tension_place(asked%tension), asked%confined)
-         model%flow%span = asked%length
-         allocate (model%layers(asked%layers), state%layers(asked%layers))
+         call cut_strips(section%shape, section%core_shape, record%layers, model%flow%section%strips)
+         model%flow%laws = section_laws(section, tension_place(record%tension), record%confined)
+         model%flow%span = record%length
+         allocate (model%layers(record%layers), state%layers(record%layers))
          associate (cut => model%flow%section, laws => model%flow%laws)
-            do i = 1, asked%layers
+            do i = 1, record%layers
                model%layers(i)%concrete = laws%shell
                if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) model%layers(i)%concrete = laws%core
                model%layers(i)%stirrup = section%transverse%steel
                model%layers(i)%rho_z = transverse_ratio(cut, cut%strips%y(i), &
                             cut%strips%area(i)/cut%strips%dy)
             end do
-            call begin(cut, laws, asked%axial_load, state%flexure, error)
+            call begin(cut, laws, record%axial_load, state%flexure, error)
          end associate
          if (allocated(error)) return
          call begin_flow(model%flow, state%flexure)

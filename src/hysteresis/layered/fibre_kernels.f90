@@ -5,7 +5,7 @@ module rbs_hysteresis_layered_fibre_kernels
    implicit none
    private
 
-   public :: add_lines, look_along, look_back
+   public :: add_lines, find_ends_ahead, find_ends_behind
 
    !> Added to distances that must not count as nearest
    real(wp), parameter :: far_away = 1.0e120_wp
@@ -40,7 +40,8 @@ contains
    !> when it comes to the end of its line ahead.
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
-   pure subroutine look_along(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, opening_rate, &
+   pure subroutine find_ends_ahead(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, &
+                                   opening_rate, &
                               rotation_rate, &
                               least_rate, clearance, ahead, nearest, least_clearance, any_unloads, stiffness)
       integer, intent(in) :: n
@@ -86,10 +87,11 @@ contains
          least_both = min(least_both, both_ways(i))
       end do
       any_unloads = least_both < 0.5_wp
-   end subroutine look_along
+   end subroutine find_ends_ahead
 
-   !> When a layer was last at the end of its line behind: the ways back, as in `look_along`.
-   pure subroutine look_back(n, y, lo, hi, w, phi, opening_rate, rotation_rate, least_rate, behind, nearest)
+   !> When a layer was last at the end of its line behind: the ways back, as in `find_ends_ahead`.
+   pure subroutine find_ends_behind(n, y, lo, hi, w, phi, opening_rate, rotation_rate, least_rate, behind, &
+                                    nearest)
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), lo(n), hi(n), w, phi, opening_rate, rotation_rate, least_rate
       !> Ways back, in units of the rates, and the least of them
@@ -108,6 +110,6 @@ contains
          behind(i) = max((d - lo(i))*per_v, (d - hi(i))*per_v) + max(0.0_wp, least_rate - size_v)*per_least
          nearest = min(nearest, behind(i))
       end do
-   end subroutine look_back
+   end subroutine find_ends_behind
 
 end module rbs_hysteresis_layered_fibre_kernels

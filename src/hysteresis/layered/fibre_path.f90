@@ -3,7 +3,7 @@
 module rbs_hysteresis_layered_fibre_path
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layered_fibre_kernels, only: look_along, look_back
+   use rbs_hysteresis_layered_fibre_kernels, only: find_ends_ahead, find_ends_behind
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    implicit none
    private
@@ -69,7 +69,7 @@ contains
       do pass = 1, most_passes
          if (.not. self%a > no_stiffness*self%stiffness) exit
          self%opening_rate = -(self%s*rotation_rate + axial_rate)/self%a
-         call look_ahead(self, least_clearance)
+         call distances_ahead(self, least_clearance)
          if (least_clearance > 0.0_wp) then
             call set_ends(self)
             return
@@ -89,7 +89,7 @@ contains
       end do
       call weigh_both_ways(self)
       if (self%failed) return
-      call look_ahead(self, least_clearance)
+      call distances_ahead(self, least_clearance)
       call set_ends(self)
    end subroutine choose_branches
 
@@ -113,17 +113,18 @@ contains
    end subroutine leave_end
 
    !> Ways of all layers to the ends of their branches.
-   pure subroutine look_ahead(self, least_clearance)
+   pure subroutine distances_ahead(self, least_clearance)
       type(fibre_section), intent(inout) :: self
       !> Not above zero if a layer has none
       real(wp), intent(out) :: least_clearance
 
-      call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%unload_on_reversal, &
+      call find_ends_ahead(self%count, self%y, self%k, self%lo, self%hi, self%slack, &
+                           self%unload_on_reversal, &
                       self%both_ways, self%opening, self%rotation, self%opening_rate, self%rotation_rate, &
                       self%least_rate(self%opening_rate, self%rotation_rate), self%end_tolerance(), &
                                       self%ahead, &
                       self%ends%ahead, least_clearance, self%ends%unload_on_reversal, self%ends%stiffness)
-   end subroutine look_ahead
+   end subroutine distances_ahead
 
    !> Length of the chosen path, ahead and back, until a layer reaches the end of its branch.
    pure subroutine set_ends(self)
@@ -144,7 +145,7 @@ contains
             ends%ahead = unbounded
          end if
          if (ends%unload_on_reversal) return
-         call look_back(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, &
+         call find_ends_behind(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, &
                         self%opening_rate, &
                         self%rotation_rate, self%least_rate(self%opening_rate, self%rotation_rate), &
                                                             self%behind, ends%behind)

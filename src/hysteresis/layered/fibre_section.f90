@@ -126,7 +126,7 @@ module rbs_hysteresis_layered_fibre_section
       procedure :: put
       procedure :: opening_at
       procedure :: read_plane
-      procedure :: look_at
+      procedure :: motion_of_layers
       procedure :: mark
       procedure :: restore
       procedure :: forget
@@ -351,7 +351,7 @@ contains
    end subroutine read_plane
 
    !> Layers at a point of the present branches, and how they move along a path with given rates.
-   pure subroutine look_at(self, rotation, axial_load, rotation_rate, axial_rate, d, v)
+   pure subroutine motion_of_layers(self, rotation, axial_load, rotation_rate, axial_rate, d, v)
       class(fibre_section), intent(in) :: self
       !> Rotation of the joint, counted from `rest`; axial load, and rates
       real(wp), intent(in) :: rotation, axial_load, rotation_rate, axial_rate
@@ -363,7 +363,7 @@ contains
       d = self%opening_at(rotation, axial_load) + self%y*(rotation + self%rest)
       v = opening_rate + self%y*rotation_rate
       where (abs(v) <= self%least_rate(opening_rate, rotation_rate)) v = 0.0_wp
-   end subroutine look_at
+   end subroutine motion_of_layers
 
    !> Put the joint on a point of its present branches that lies ahead on a path with given rates. Its work is
    !> left to the caller.

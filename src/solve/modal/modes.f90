@@ -181,11 +181,11 @@ contains
       class(dynamic_stiffness), intent(inout) :: dynamic
       type(modes_type), intent(inout) :: modes
       !> Digits of the critical load that the condition needs
-      integer, parameter :: few = 24
+      integer, parameter :: digits_needed = 24
       real(wp) :: share
 
       if (.not. structure%axially_loaded) return
-      share = 1.0_wp/dynamic%critical_multiple(few)
+      share = 1.0_wp/dynamic%critical_multiple(digits_needed)
       modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
       if (modes%condition < worst_condition) return
       modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error '// &

@@ -268,9 +268,9 @@ contains
          call self%equilibrium%remember(self%current%q)
          if (.not. abs(self%goal - self%current%t) > 0.0_wp) return
          if (self%equilibrium%varies) then
-            call self%see_corner(self%current%t)
+            call self%record_corner(self%current%t)
          else
-            call self%see_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
+            call self%record_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
          end if
       end subroutine accept
 

@@ -46,7 +46,7 @@ module rbs_solve_static_equilibrium
 
    !> Most springs of a chain for full matrices, and the length of its equations: the springs, the force and
    !> two right-hand sides, and one number more, as processors take two or four at a time.
-   integer, parameter :: few = 4, row_length = few + 4
+   integer, parameter :: most_dense = 4, row_length = most_dense + 4
 
    !> A pivot that is round-off of numbers of the order of one.
    real(wp), parameter :: no_pivot = 1.0e-13_wp
@@ -75,9 +75,10 @@ module rbs_solve_static_equilibrium
       logical, private :: coupled = .false., refines = .false.
       !> Whether the springs are few; then their geometric stiffness, the equations without stiffness, and
       !> their scales: one over the root of the initial stiffness, and the largest arm
-      logical, private :: are_few = .false.
-      real(wp), private :: geometric(few, few) = 0.0_wp, equation(row_length, few + 1) = 0.0_wp
-      real(wp), private :: scale(few) = 0.0_wp, most = 1.0_wp
+      logical, private :: is_dense = .false.
+      real(wp), private :: geometric(most_dense, most_dense) = 0.0_wp, &
+           equation(row_length, most_dense + 1) = 0.0_wp
+      real(wp), private :: scale(most_dense) = 0.0_wp, most = 1.0_wp
       type(band_matrix), private :: matrix
       !> Pivots of the initial stiffness (unknowns)
       real(wp), allocatable, private :: pivot(:)
@@ -155,12 +156,12 @@ contains
       call hold_still(self)
       call self%matrix%factor()
       self%pivot = 1.0_wp/self%matrix%triangle(1, :)
-      self%are_few = self%refines .and. .not. self%has_still .and. springs <= few
-      if (self%are_few) call create_few(self)
+      self%is_dense = self%refines .and. .not. self%has_still .and. springs <= most_dense
+      if (self%is_dense) call create_dense(self)
    end subroutine create
 
    !> The equations of a few springs from the second-order forces by a unit of each deformation.
-   subroutine create_few(self)
+   subroutine create_dense(self)
       class(equilibrium_type), intent(inout) :: self
       real(wp) :: no_load(signals), moved(self%moving, self%moving)
       integer :: i, j
@@ -189,7 +190,7 @@ contains
          end do
          row(m + 2, m + 1) = 1.0_wp/self%most
       end associate
-   end subroutine create_few
+   end subroutine create_dense
 
    !> Hold the unknowns that do not move.
    subroutine hold_still(self)
@@ -217,9 +218,9 @@ contains
 
       self%lost_digits = .false.
       residual = displacement - self%structure%top_displacement(springs%d)
-      if (self%are_few .and. .not. by_force) then
+      if (self%is_dense .and. .not. by_force) then
          call self%find_unbalance(springs, force)
-         call follow_few(self, springs%k, residual, rate, found)
+         call follow_dense(self, springs%k, residual, rate, found)
          if (found) return
       end if
       if (self%coupled) then
@@ -246,14 +247,14 @@ contains
    end subroutine follow
 
    !> A few springs, driven by the displacement. Not found where the equations have next to no pivot.
-   subroutine follow_few(self, k, residual, rate, found)
+   subroutine follow_dense(self, k, residual, rate, found)
       class(equilibrium_type), intent(inout) :: self
       real(wp), intent(in), contiguous :: k(:)
       !> Of the displacement [m]
       real(wp), intent(in) :: residual
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
-      real(wp) :: row(row_length, few + 1), largest, correction
+      real(wp) :: row(row_length, most_dense + 1), largest, correction
       integer :: i
 
       associate (m => self%moving, scale => self%scale)
@@ -283,13 +284,13 @@ contains
          self%displacement_rate = 1.0_wp
          self%dead_load_work_rate = 0.0_wp
       end associate
-   end subroutine follow_few
+   end subroutine follow_dense
 
    !> Solve a few equations of one length by elimination with pivots.
    pure subroutine solve_rows(n, row, regular)
       integer, intent(in) :: n
       !> Each column an equation: its coefficients (n), and right-hand sides, which the solutions replace
-      real(wp), intent(inout) :: row(row_length, few + 1)
+      real(wp), intent(inout) :: row(row_length, most_dense + 1)
       logical, intent(out) :: regular
       real(wp) :: pivot(row_length), share
       integer :: i, j, p
@@ -482,24 +483,24 @@ contains
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: force
-      real(wp) :: d(few)
+      real(wp) :: d(most_dense)
       integer :: i
 
-      if (self%coupled .and. .not. self%are_few) then
+      if (self%coupled .and. .not. self%is_dense) then
          ! Where an element snaps back its last tangent serves.
          call self%structure%linearise(springs%k, self%tangent, self%unstable)
          call find_residual(self, springs, force)
          return
       end if
       self%unbalance = 0.0_wp
-      if (self%are_few) then
+      if (self%is_dense) then
          d = 0.0_wp
          d(:self%moving) = springs%d(:self%moving)
       end if
       associate (structure => self%structure)
          do i = 1, self%moving
             self%f(i) = structure%arm(i)*force - (springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i)))
-            if (self%are_few) self%f(i) = self%f(i) - sum(self%geometric(:, i)*d)
+            if (self%is_dense) self%f(i) = self%f(i) - sum(self%geometric(:, i)*d)
             self%unbalance = max(self%unbalance, abs(self%f(i))/merge(structure%total_height, 1.0_wp, &
                                                                       structure%place(i)%kind == flexure))
          end do

@@ -118,9 +118,9 @@ module rbs_solve_static_path
       procedure :: prepare
       procedure :: compress
       procedure :: follow
-      procedure :: look
-      procedure :: see_corner
-      procedure :: see_crossing
+      procedure :: check_point
+      procedure :: record_corner
+      procedure :: record_crossing
       procedure :: energies
       procedure(serialize_interface), deferred :: serialize
       procedure(advance_interface), deferred :: advance
@@ -267,14 +267,14 @@ contains
       energy = self%energies()
       call begin_check(self%check, self%structure, self%springs, energy%residual)
       ! A continued path has forces and works from before, with their round-off.
-      call self%look(self%control, self%unbalance(), .false., failure)
+      call self%check_point(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
       self%violates_balance = .false.
       do i = 1, size(target)
          self%number = i - 1
          self%way_begin = self%control
          ! A path whose first target is not where it begins has a way to it.
-         if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%see_corner(0.0_wp)
+         if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%record_corner(0.0_wp)
          call self%advance(target(i), failure)
          if (task%summary%stopped) then
             task%summary%remark = 'the path was stopped on the way to row '//to_text(i)// &
@@ -301,7 +301,8 @@ contains
                call task%summary%update_energies(self%energies())
             end if
          else if (ends .or. .not. self%is_straight) then
-            call self%look(target(i), self%unbalance(), self%by_force .and. self%direction == 0, failure)
+            call self%check_point(target(i), self%unbalance(), self%by_force .and. self%direction == 0, &
+                                  failure)
          end if
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          ! A point that is no state of the structure is no row.
@@ -353,7 +354,7 @@ contains
    !> Where a straight line ends, at a row of a curve, and at the end of the path: energies and rotations
    !> belong to the summary, and the point must be a state of the structure. On a straight line forces and
    !> rotations are linear and energies quadratic, so that nothing is larger between its ends.
-   subroutine look(self, target, unbalance, on_ends, failure)
+   subroutine check_point(self, target, unbalance, on_ends, failure)
       class(static_path), intent(inout) :: self
       !> On the way to which the path is, and the largest force out of equilibrium [N]
       real(wp), intent(in) :: target, unbalance
@@ -381,7 +382,7 @@ contains
                                  springs%d0, springs%f0, springs%k, check%largest_force, &
                                  check%stiff_force, works)
             ways = sum(abs(self%structure%arm*springs%d))
-            if (balance_fault() > 0) call see_parts(check, self%structure, springs)
+            if (balance_fault() > 0) call update_parts(check, self%structure, springs)
             check%largest_place = max(check%largest_place, ways)
             check%stiff_work = max(check%stiff_work, works)
          end if
@@ -418,7 +419,7 @@ contains
          end if
       end function balance_fault
 
-   end subroutine look
+   end subroutine check_point
 
    !> Works of the springs, in size; their largest forces, which grow.
    pure subroutine measure_springs(n, initial, share, d, d0, f0, k, force, stiff_force, works)
@@ -441,18 +442,18 @@ contains
 
    !> The path is at a corner, a share of the way to the present target: its figures belong to the summary,
    !> and its row to those who keep every corner.
-   subroutine see_corner(self, share)
+   subroutine record_corner(self, share)
       class(static_path), intent(inout) :: self
       real(wp), intent(in) :: share
       type(error_type), allocatable :: error
 
       call update_peak(self)
       if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
-   end subroutine see_corner
+   end subroutine record_corner
 
    !> Straight line from the present point to another one. Where it passes zero displacement, the
    !> force in the direction of loading begins or ends, and may be the largest.
-   subroutine see_crossing(self, displacement, force)
+   subroutine record_crossing(self, displacement, force)
       class(static_path), intent(inout) :: self
       !> Of the other point: of the top [m], lateral [N]
       real(wp), intent(in) :: displacement, force
@@ -460,7 +461,7 @@ contains
       if (.not. displacement*self%displacement < 0.0_wp) return
       call self%task%summary%update_peak(0.0_wp, (self%force*displacement - force*self%displacement)/ &
                                               (displacement - self%displacement))
-   end subroutine see_crossing
+   end subroutine record_crossing
 
    !> Tell the summary of the present rotations.
    subroutine update_rotation(self)
@@ -599,14 +600,14 @@ contains
          self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
       end do
-      call see_parts(self, structure, springs)
+      call update_parts(self, structure, springs)
       if (structure%kinematics /= finite) return
       self%place = of_place_on_curve
       self%work = of_work_on_curve
    end subroutine begin_check
 
    !> Forces and work of parts without springs.
-   subroutine see_parts(self, structure, springs)
+   subroutine update_parts(self, structure, springs)
       type(row_check), intent(inout) :: self
       class(structure_type), intent(in) :: structure
       type(spring_array), intent(in) :: springs
@@ -616,6 +617,6 @@ contains
       self%largest_force = max(self%largest_force, force)
       self%stiff_force = max(self%stiff_force, terms)
       self%stiff_work = max(self%stiff_work, work)
-   end subroutine see_parts
+   end subroutine update_parts
 
 end module rbs_solve_static_path

@@ -112,7 +112,7 @@ contains
             if (direction /= self%last_way .and. .not. went_back) self%arrived = 0
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%crushed_joint() > 0) return
-            call self%look(target, self%equilibrium%unbalance, .true., error)
+            call self%check_point(target, self%equilibrium%unbalance, .true., error)
             if (allocated(error)) return
             if (self%goes_back .and. .not. went_back) call begin_loop(self)
             call begin_line(self, self%direction)
@@ -125,13 +125,13 @@ contains
             end if
             call go(self, self%finish)
             call end_line(self)
-            call tell_corner()
+            call report_corner()
          else if (direction*(self%finish - target) > on_the_end*abs(target)) then
             call go(self, target)
          else if (direction*(self%finish - target) < -on_the_end*abs(target)) then
             call go(self, self%finish)
             call end_line(self)
-            call tell_corner()
+            call report_corner()
          else
             call go(self, target)
             call end_line(self)
@@ -146,14 +146,14 @@ contains
    contains
 
       !> On a way back the number of rows between targets does not fall.
-      subroutine tell_corner()
+      subroutine report_corner()
          real(wp) :: share
 
          share = (self%control - self%way_begin)/(target - self%way_begin)
          if (share > self%share) idle = 0
          self%share = max(self%share, share)
-         call self%see_corner(self%share)
-      end subroutine tell_corner
+         call self%record_corner(self%share)
+      end subroutine report_corner
 
    end subroutine advance
 
@@ -297,7 +297,7 @@ contains
          self%work = self%work + 0.5_wp*(force + self%force)*moved
          self%loop_way = self%loop_way + moved
       end associate
-      call self%see_crossing(displacement, force)
+      call self%record_crossing(displacement, force)
       self%force = force
       self%displacement = displacement
       self%control = control

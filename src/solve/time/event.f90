@@ -9,7 +9,7 @@ module rbs_solve_time_event
    implicit none
    private
 
-   public :: event_type, find_event, same_event, event_distance, round_off_of, felt, direction_of
+   public :: event_type, find_event, same_event, event_distance, round_off_of, above_round_off, direction_of
 
    !> Deformations beyond this [m, rad] have no meaning: an end there is none.
    real(wp), parameter :: no_end = 1.0e100_wp
@@ -82,11 +82,11 @@ contains
    end function round_off_of
 
    !> A number, zero where it is not above its round-off.
-   elemental real(wp) function felt(x, least)
+   elemental real(wp) function above_round_off(x, least)
       real(wp), intent(in) :: x, least
 
-      felt = merge(x, 0.0_wp, abs(x) > least)
-   end function felt
+      above_round_off = merge(x, 0.0_wp, abs(x) > least)
+   end function above_round_off
 
    !> Whether two events are of the same spring and of the same kind.
    pure logical function same_event(one, other)

@@ -129,7 +129,7 @@ contains
          call column%body_velocities(state%q, state%v, self%v0(:, 1:))
       end associate
       self%v1 = self%v0
-      call see_bodies(self, state%q)
+      call locate_bodies(self, state%q)
       call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
       self%a0(:, 1:) = self%g0(:, 1:)/self%mass
       self%largest = self%scale
@@ -147,7 +147,7 @@ contains
       state%springs%work_before(:) = self%work
       state%springs%work = 0.0_wp
       call state%motion%set_axial_loads(state%springs, self%load)
-      call see_bodies(self, state%q)
+      call locate_bodies(self, state%q)
       self%from(:) = self%rotation
       self%joint%start(1) = self%joint%finish(1)
       self%joint%start(2) = self%joint%finish(2)
@@ -169,7 +169,7 @@ contains
    end subroutine take_step
 
    !> The bodies and joints at one state.
-   subroutine see_bodies(self, q)
+   subroutine locate_bodies(self, q)
       type(finite_stepper), intent(inout) :: self
       real(wp), intent(in), contiguous :: q(:)
       integer :: i
@@ -184,7 +184,7 @@ contains
             joint%mean = joint%finish
          end associate
       end do
-   end subroutine see_bodies
+   end subroutine locate_bodies
 
    !> Values of a joint, of slip, rotation and opening, from those of all springs.
    pure function joint_values(self, x, i, opening) result(y)
@@ -261,7 +261,7 @@ contains
             else
                self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - by%beta))*self%a0)/(by%beta*h**2)
                self%v1 = self%v0 + h*((1.0_wp - by%gamma)*self%a0 + by%gamma*self%a1)
-               call see_end(self)
+               call locate_end(self)
                call find_forces_at(self, state, self%q1, self%w1, self%load, h, self%g1)
                self%r = (1.0_wp - by%alpha_f)*self%g1(:, 1:) + by%alpha_f*self%g0(:, 1:) &
                         - self%mass*((1.0_wp - by%alpha_m)*self%a1(:, 1:) + by%alpha_m*self%a0(:, 1:))
@@ -323,18 +323,18 @@ contains
    end subroutine balance
 
    !> Bodies and joints at the end of the step, and the velocities of the joints.
-   subroutine see_end(self)
+   subroutine locate_end(self)
       type(finite_stepper), intent(inout) :: self
       integer :: i
 
-      call see_bodies(self, self%q1)
+      call locate_bodies(self, self%q1)
       do i = 1, size(self%joint)
          associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
             call put_joint(self, joint_rates(self%seen(a), self%seen(b), self%v1(:, a), self%v1(:, b), &
                                              self%joint(i)), i, self%w1)
          end associate
       end do
-   end subroutine see_end
+   end subroutine locate_end
 
    !> Damping of the joints on their present lines.
    subroutine find_damping(self, state)
@@ -527,7 +527,7 @@ contains
                                /self%h
          end if
       end if
-      call see_end(self)
+      call locate_end(self)
       state%q(:) = self%q1
       state%v(:) = self%w1
       state%along_joints = 0.5_wp*sum(self%mass*self%v1(:, 1:)**2) &

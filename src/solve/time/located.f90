@@ -7,7 +7,8 @@ module rbs_solve_time_located
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_solve_time_event, only: event_type, find_event, same_event, event_distance, round_off_of, felt, &
+   use rbs_solve_time_event, only: event_type, find_event, same_event, event_distance, round_off_of, &
+      above_round_off, &
                                    direction_of
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
@@ -113,7 +114,7 @@ contains
          if (event%spring > 0) then
             if (state%springs%crushed_joint() > 0) return
          end if
-         if (state%monitor%feels) call state%update_monitor(state%begin + state%time)
+         if (state%monitor%monitors_top) call state%update_monitor(state%begin + state%time)
          if (state%monitor%collapsed) return
       end do
       state%time = finish
@@ -263,14 +264,14 @@ contains
                if (direction /= 0) then
                   if (.not. goes_on(i, direction)) cycle
                   ! A velocity that round-off could have brought about in one step has no direction.
-                  direction = direction_of(felt(state%v(i), round_off_of(state, i)*part))
+                  direction = direction_of(above_round_off(state%v(i), round_off_of(state, i)*part))
                end if
                if (direction == 0) then
                   if (.not. known) then
                      call state%motion%acceleration(springs, state%q, state%v, state%load, self%now)
                      known = .true.
                   end if
-                  direction = direction_of(felt(self%now%a(i), round_off_of(state, i)))
+                  direction = direction_of(above_round_off(self%now%a(i), round_off_of(state, i)))
                end if
                if (direction == 0) cycle
                if (goes_on(i, direction)) exit

@@ -49,7 +49,7 @@ module rbs_solve_time_monitor
       !> Absolute rotations of the bodies at both ends of a step, and their rates (n, 4)
       real(wp), allocatable, private :: rotation(:, :)
       !> Whether the acceleration of the top is monitored, and the equation of motion for it
-      logical :: feels = .false.
+      logical :: monitors_top = .false.
       type(motion_result), private :: now
    contains
       procedure :: watch_for
@@ -117,12 +117,12 @@ contains
          allocate (self%storey_drift(motion%structure%storeys), &
                    self%peak_storey_drift(motion%structure%storeys), source=0.0_wp)
       end if
-      self%feels = floor
+      self%monitors_top = floor
       if (floor) call self%now%create(motion%structure)
       self%q = q
       self%clock = clock
       self%displacement = motion%structure%top_displacement(q)
-      call see_openings(self, springs, q)
+      call update_openings(self, springs, q)
       call self%update(motion, springs, q, v, load, clock)
    end subroutine begin
 
@@ -164,7 +164,7 @@ contains
       end if
       if (rotation > self%peak_rotation) self%peak_rotation = rotation
       if (abs(shear) > abs(self%peak_base_shear)) call self%update_base_shear(shear)
-      if (self%feels) then
+      if (self%monitors_top) then
          call motion%acceleration(springs, q, v, load, self%now)
          self%peak_floor_acceleration = max(self%peak_floor_acceleration, &
             abs(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal)))
@@ -197,7 +197,7 @@ contains
       self%clock = clock
       self%displacement = displacement
       self%q(:) = q
-      if (self%opens) call see_openings(self, springs, q)
+      if (self%opens) call update_openings(self, springs, q)
    end subroutine check_limits
 
    !> Limit states that may have been reached.
@@ -295,7 +295,7 @@ contains
                                          cubic_at(share, top(1), top(2), top(3), top(4)))
       end do
       call set_bounds(self)
-      if (self%opens) call see_openings(self, springs, q1)
+      if (self%opens) call update_openings(self, springs, q1)
 
    contains
 
@@ -314,7 +314,7 @@ contains
    end subroutine check_within
 
    !> Keep the shares of the openings in the limit states.
-   pure subroutine see_openings(self, springs, q)
+   pure subroutine update_openings(self, springs, q)
       type(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       !> Deformations (springs)
@@ -324,7 +324,7 @@ contains
       do i = 1, size(self%watch)
          self%openings(i) = opening_share(self%watch(i), springs, q(self%watch(i)%turns))
       end do
-   end subroutine see_openings
+   end subroutine update_openings
 
    !> Share of the opening, and of the rotation at rest, in a limit state.
    pure real(wp) function opening_share(watch, springs, rotation) result(share)

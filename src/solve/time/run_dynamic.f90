@@ -51,7 +51,7 @@ contains
       call check_times(time, error)
       if (allocated(error)) return
       on_planes = any(structure%rules%name == 'layered') .and. &
-                  (loads%signal(vertical)%is_felt() .or. loads%signal(top_axial)%acts())
+                  (loads%signal(vertical)%is_nonzero() .or. loads%signal(top_axial)%acts())
       plan%method = analysis%method
       if (structure%tangent_numbers > 0) then
          call choose_implicit()
