@@ -7,7 +7,7 @@ module rbs_hysteresis_layer_joints
    implicit none
    private
 
-   public :: layer_joints
+   public :: layer_joints, stiffness_sums
 
    !> Round-off of the motion of a layer, as a share of its terms.
    real(wp), parameter :: round_off = 16.0_wp*epsilon(1.0_wp)
@@ -130,8 +130,7 @@ contains
       do j = 1, self%count
          z = self%motion(j, d) + self%motion(j, change)
          associate (i => self%first(j), last => self%last(j))
-            call open_up(last - i + 1, self%y(i:last), z, change(i:last))
-            change(i:last) = change(i:last) - d(i:last)
+            change(i:last) = (z(1) + self%y(i:last)*z(2)) - d(i:last)
          end associate
       end do
    end subroutine align
@@ -167,25 +166,38 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), z(2), d0(n), f0(n), k(n)
       real(wp), intent(out) :: sums(5)
-      real(wp) :: of_k, of_ky, of_kyy, force, moment, f
+      real(wp) :: force, moment, f
+      integer :: i
+
+      force = 0.0_wp
+      moment = 0.0_wp
+      !$omp simd reduction(+:force, moment) private(f)
+      do i = 1, n
+         f = f0(i) + k(i)*((z(1) + y(i)*z(2)) - d0(i))
+         force = force + f
+         moment = moment + y(i)*f
+      end do
+      sums = [stiffness_sums(n, y, k), force, moment]
+   end subroutine add_up
+
+   !> Sums of k, k y and k y**2.
+   pure function stiffness_sums(n, y, k) result(sums)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: y(n), k(n)
+      real(wp) :: sums(3), of_k, of_ky, of_kyy
       integer :: i
 
       of_k = 0.0_wp
       of_ky = 0.0_wp
       of_kyy = 0.0_wp
-      force = 0.0_wp
-      moment = 0.0_wp
-      !$omp simd reduction(+:of_k, of_ky, of_kyy, force, moment) private(f)
+      !$omp simd reduction(+:of_k, of_ky, of_kyy)
       do i = 1, n
-         f = f0(i) + k(i)*((z(1) + y(i)*z(2)) - d0(i))
-         force = force + f
-         moment = moment + y(i)*f
          of_k = of_k + k(i)
          of_ky = of_ky + k(i)*y(i)
          of_kyy = of_kyy + k(i)*y(i)**2
       end do
-      sums = [of_k, of_ky, of_kyy, force, moment]
-   end subroutine add_up
+      sums = [of_k, of_ky, of_kyy]
+   end function stiffness_sums
 
    !> Whether all layers stay on their lines in another position.
    pure subroutine stay_on_lines(self, d, first, last, one_way, stay)

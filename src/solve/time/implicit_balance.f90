@@ -396,13 +396,21 @@ contains
       end do
    end subroutine measure_all
 
-   !> The largest product of two numbers in given places, in size.
+   !> The largest product of two numbers in given places, in size. Where no spring is a layer, all are.
    pure real(wp) function largest(place, a, b)
       integer, intent(in), contiguous :: place(:)
       real(wp), intent(in), contiguous :: a(:), b(:)
       integer :: i
 
       largest = 0.0_wp
+      if (size(place) == 0) return
+      if (place(size(place)) == size(place)) then
+         !$omp simd reduction(max:largest)
+         do i = 1, size(place)
+            largest = max(largest, abs(a(i)*b(i)))
+         end do
+         return
+      end if
       do i = 1, size(place)
          largest = max(largest, abs(a(place(i))*b(place(i))))
       end do

@@ -4,6 +4,7 @@
 module rbs_structure_frame_layered
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
+   use rbs_hysteresis_layer_joints, only: stiffness_sums
    use rbs_structure_frame_element, only: frame_element, motion_of_rest, joint_numbers, unbalance
    implicit none
    private
@@ -60,8 +61,8 @@ contains
                call add_spring(sum_of, a(:, 1), soft(1, j))
                cycle
             end if
-            now = sums(last - i + 1, e%y(i:last), k(i:last))
-            whole = sums(last - i + 1, e%y(i:last), k0(i:last))
+            now = stiffness_sums(last - i + 1, e%y(i:last), k(i:last))
+            whole = stiffness_sums(last - i + 1, e%y(i:last), k0(i:last))
             call share_motion(whole(1), now(1), shares)
             now(3) = now(3) - now(2)**2/now(1)
             call share_motion(whole(3) - whole(2)**2/whole(1), now(3), shares)
@@ -106,25 +107,6 @@ contains
          self%whole(:, i) = self%whole(:, i) + compliance*p(i)*p
       end do
    end subroutine add_spring
-
-   !> Sums of k, k y and k y**2.
-   pure function sums(n, y, k)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), k(n)
-      real(wp) :: sums(3), of_k, of_ky, of_kyy
-      integer :: i
-
-      of_k = 0.0_wp
-      of_ky = 0.0_wp
-      of_kyy = 0.0_wp
-      !$omp simd reduction(+:of_k, of_ky, of_kyy)
-      do i = 1, n
-         of_k = of_k + k(i)
-         of_ky = of_ky + k(i)*y(i)
-         of_kyy = of_kyy + k(i)*y(i)**2
-      end do
-      sums = [of_k, of_ky, of_kyy]
-   end function sums
 
    pure function cross_product(a, b) result(c)
       real(wp), intent(in) :: a(3), b(3)
