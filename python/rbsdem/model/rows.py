@@ -248,10 +248,11 @@ class _Channels:
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Return a channel."""
-            channels = self.__dict__.get("channels", {})
+            """Return a channel, and keep it as an attribute."""
+            own = self.__dict__
+            channels = own.get("channels", {})
             if name in channels or name in _OPTIONAL:
-                return channels.get(name)
+                return own.setdefault(name, channels.get(name))
             raise AttributeError(f"a {type(self).__name__} has no {name!r}")
 
 
@@ -362,8 +363,9 @@ class Rows(_Channels):
         return path
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out the path: it is found again."""
-        return {name: value for name, value in vars(self).items() if name != "_path"}
+        """Leave out the path and channels by name: they are found again."""
+        left_out = {"_path", *self.channels, *_OPTIONAL}
+        return {name: value for name, value in vars(self).items() if name not in left_out}
 
     @property
     def _is_column(self) -> bool:
