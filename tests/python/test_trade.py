@@ -19,6 +19,7 @@ from reference_chain import Linear, chain
 
 import rbsdem
 from rbsdem import compare_methods
+from rbsdem.frames import Frame, FrameMember
 from rbsdem.methods import ladder, physics
 from rbsdem.methods.ladder import study_case
 from rbsdem.methods.physics import split_bodies
@@ -380,6 +381,23 @@ def test_split_bodies_keeps_mass_height_and_inertia():
     expected = [m * length**2 / 12 for m, length in zip(halves.masses, halves.lengths, strict=True)]
     assert halves.rotary_inertia == pytest.approx(expected)
     assert [spring.k for spring in halves.flexure] == [2e8, 2e8, 4e8, 4e8]
+
+
+def test_methods_of_a_frame_have_their_order():
+    kind = FrameMember(modulus=3e10, area=0.16, inertia=2e-3)
+    frame = Frame.grid(
+        [3.2], [6.0], columns=kind, beams=kind, beam_load=8e4, floor_mass=5e4, damping=0.05
+    )
+    time = np.arange(0.0, 2.001, 0.01)
+    found = compare_methods(
+        frame, time, ground_acceleration=np.sin(12 * time), methods=("newmark", "rk4"), digits=6
+    )
+    errors = [run.error for run in found.rows if run.setting.method == "newmark"][:4]
+    np.testing.assert_allclose(np.divide(errors[:-1], errors[1:]), 4.0, rtol=0.05)
+    refused = [run for run in found.rows if run.setting.method == "rk4"]
+    assert refused
+    assert all("unknowns without mass" in run.reason for run in refused)
+    assert found.physics is None
 
 
 def test_what_no_setting_can_solve():

@@ -137,7 +137,7 @@ def trade(
     model = read_case(case)
     loads: dict[str, Any] = dict(model.loads)
     study = compare_methods(
-        model.plain_column("trade"),
+        model.column,
         time=None if model.method == "static" else model.time,
         **loads,
         collapse_drift=model.settings.get("collapse_drift"),

@@ -16,8 +16,9 @@ from rbsdem import _arguments
 from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, RbsdemError, SolveError
-from rbsdem.model.column import Column, Kinematics, checked_column, notes_off
-from rbsdem.run.accuracy import Answer, answer_of, common_interval
+from rbsdem.model.column import Kinematics, notes_off
+from rbsdem.model.frame import Frame, Structure, checked_structure
+from rbsdem.run.accuracy import Answer, answer_of, base_action, common_interval
 from rbsdem.run.result import cyclic, time_history
 from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS, Solver
 
@@ -160,12 +161,12 @@ class SolvedRun(MethodRun):
 
 @dataclass(frozen=True)
 class StudyCase:
-    """One column under one loading.
+    """One structure under one loading.
 
     Attributes
     ----------
-    column : Column
-        The column.
+    column : Column or Frame
+        The structure.
     time : ndarray, shape (m,)
         Times of the loading [s]; for a static path the numbers of its points.
     loads : dict of ndarray, shape (m,)
@@ -178,7 +179,7 @@ class StudyCase:
         Whether the path is static.
     """
 
-    column: Column
+    column: Structure
     time: Array
     loads: dict[str, Array]
     initial: Mapping[str, ArrayLike] | None = None
@@ -190,22 +191,23 @@ class StudyCase:
         """Quantity of the response: "displacement", or "force" where the displacement is driven."""
         return "force" if "displacement" in self.loads else "displacement"
 
-    def solve(self, setting: Setting, column: Column | None = None) -> Answer:
+    def solve(self, setting: Setting, column: Structure | None = None) -> Answer:
         """Return the answer of a setting, for another column if one is given."""
         column = self.column if column is None else column
         if column.kinematics != setting.kinematics:
             with notes_off():
-                column = dataclasses.replace(column, kinematics=setting.kinematics)
+                level: Any = setting.kinematics
+                column = dataclasses.replace(column, kinematics=level)
         with unwarned(AccuracyWarning, LongRunWarning):
             if self.static:
                 return self._solve_static(setting, column)
             result = time_history(column, self.time, **self.keywords(setting, column))
         return answer_of(result, self.time)
 
-    def keywords(self, setting: Setting, column: Column) -> dict[str, Any]:
+    def keywords(self, setting: Setting, column: Structure) -> dict[str, Any]:
         """Return the arguments of `time_history` for a setting."""
         loads: dict[str, Any] = dict(self.loads)
-        if column.kinematics == "small" and column.axial_spring is None:
+        if column.kinematics == "small" and not column.opens:
             # These loads would have nothing to act on and would be refused.
             loads = {name: load for name, load in loads.items() if name not in VERTICAL}
         how = {"initial": self._initial(column.n), "collapse_drift": self.collapse_drift}
@@ -221,7 +223,7 @@ class StudyCase:
             for name, values in self.initial.items()
         }
 
-    def _solve_static(self, setting: Setting, column: Column) -> Answer:
+    def _solve_static(self, setting: Setting, column: Structure) -> Answer:
         """Return the answer at the points of the path, however it is divided."""
         (name, path), parts = next(iter(self.loads.items())), setting.parts
         kept = reversals(path)
@@ -237,7 +239,7 @@ class StudyCase:
         load: dict[str, Any] = {name: driven}
         result: Any = cyclic(column, **load, every=every, collapse_drift=self.collapse_drift)
         response = result.force if name == "displacement" else result.displacement
-        histories = [response, result.moment[:, 0], result.energy["spring"]]
+        histories = [response, base_action(result), result.energy["spring"]]
         if parts == 0:
             # A point in between lies on the straight line of its leg, at its driven value.
             place, rows = along(path, kept), np.arange(response.size)
@@ -248,7 +250,11 @@ class StudyCase:
         return Answer(points, response, moment, taken, status)
 
     def run(
-        self, setting: Setting, repeats: int = 1, column: Column | None = None, seconds: float = 1e9
+        self,
+        setting: Setting,
+        repeats: int = 1,
+        column: Structure | None = None,
+        seconds: float = 1e9,
     ) -> MethodRun:
         """Return the answer of a setting and the median of its wall times, or why it has no answer.
 
@@ -284,7 +290,7 @@ class StudyCase:
 
 
 def study_case(
-    column: Column,
+    column: Structure,
     time: ArrayLike | None,
     loads: Mapping[str, ArrayLike],
     initial: Mapping[str, ArrayLike] | None,
@@ -297,7 +303,7 @@ def study_case(
     InputError
         If the loads do not go together.
     """
-    checked_column(column, "compare_methods: ")
+    checked_structure(column, "compare_methods: ")
     if not isinstance(initial, Mapping | None):
         raise InputError(
             f"compare_methods: initial = {_arguments.shown(initial)} must be a mapping of slips, "
@@ -446,13 +452,15 @@ def probe(case: StudyCase) -> Probe:
     time = case.time
     interval, regular = common_interval(time)
     level = case.column.kinematics
-    first = _beginning(case, min(1e-6 * interval, time[1] - time[0]))
-    keywords = first.keywords(Setting("rk4", level), case.column)
-    result = time_history(first.column, first.time, **keywords)
-    limit = float(result.summary["stable_step"])
-    steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
-    short = _beginning(case, 0.5 * limit * max(steps, 1.0))
-    explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
+    limit, explicit = interval, 0.0
+    if not isinstance(case.column, Frame):  # It refuses explicit methods at once.
+        first = _beginning(case, min(1e-6 * interval, time[1] - time[0]))
+        keywords = first.keywords(Setting("rk4", level), case.column)
+        result = time_history(first.column, first.time, **keywords)
+        limit = float(result.summary["stable_step"])
+        steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
+        short = _beginning(case, 0.5 * limit * max(steps, 1.0))
+        explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
     rows = min(100, time.size - 1)
     short = _beginning(case, float(time[rows] - time[0]))
     try:
@@ -541,7 +549,7 @@ def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[li
 OF_SETTING = tuple(name for name in Solver.__annotations__ if name in Setting.__annotations__)
 
 
-def own_setting(column: Column, given: Solver) -> Setting:
+def own_setting(column: Structure, given: Solver) -> Setting:
     """Return the setting that a user gives.
 
     Raises

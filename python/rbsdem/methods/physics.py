@@ -410,9 +410,9 @@ def _little_inertia(column: Column) -> Column:
     return dataclasses.replace(column, rotary_inertia=few, depth=0.0, top_inertia=0.0)
 
 
-def variants(case: StudyCase, axial: Spring | None) -> Iterator[Variant]:
+def variants(case: StudyCase, column: Column, axial: Spring | None) -> Iterator[Variant]:
     """Yield the models to compare with; each has one part changed."""
-    column, moving = case.column, not case.static
+    moving = not case.static
     switches: list[tuple[object, str, dict[str, object]]] = [
         (column.axial_load, "no axial load", {"axial_load": 0.0}),
         (column.self_weight, "no self-weight", {"self_weight": False}),
@@ -451,7 +451,10 @@ def find_physics(
     trials: MethodRuns, reference: Reference | None, tolerance: float | None, axial: Spring | None
 ) -> Physics | str:
     """Return the effect of each part of the model, or the reason why it is not known."""
-    several = list(variants(trials.case, axial))
+    column = trials.case.column
+    if not isinstance(column, Column):
+        return "no part of a frame is switched"
+    several = list(variants(trials.case, column, axial))
     weight = len(several) + TWICE_THE_BODIES + 1
     base = _base(trials, reference, trials.budget.left() / weight)
     if isinstance(base, str):

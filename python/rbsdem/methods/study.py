@@ -24,7 +24,7 @@ from rbsdem.methods.ladder import (
     study_case,
 )
 from rbsdem.methods.physics import Physics, Reference, find_physics, find_reference
-from rbsdem.model.column import Column
+from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.accuracy import Errors, errors_of
@@ -198,7 +198,7 @@ class MethodStudy(Tabular):
 
 
 def compare_methods(
-    column: Column,
+    column: Structure,
     time: ArrayLike | GroundMotion | None = None,
     *,
     force: ArrayLike | None = None,
@@ -226,8 +226,9 @@ def compare_methods(
 
     Parameters
     ----------
-    column : Column
-        The column. Its kinematics are those of the reference.
+    column : Column or Frame
+        The structure. Its kinematics are those of the reference. Of a frame no parts of the model
+        are switched.
     time : array_like of shape (m,), or GroundMotion, optional
         Times of the loading [s], or the motion of the ground. Without times and without a
         `GroundMotion` the path is static.

@@ -143,6 +143,11 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
     return result
 
 
+def base_action(run: Rows) -> Array:
+    """Return the compared action at the base: the moment of a column, the shear of a frame."""
+    return run.moment[:, 0] if isinstance(run, Response) else run.base_shear
+
+
 def answer_of(run: Rows, times: Array, driven: bool = False, parts: int = 1) -> Answer:
     """Return the compared part of a result at some times.
 
@@ -151,8 +156,7 @@ def answer_of(run: Rows, times: Array, driven: bool = False, parts: int = 1) -> 
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]
-    moment = run.moment[:, 0] if isinstance(run, Response) else run.base_shear
-    histories = [np.array(values) for values in (response, moment, taken)]
+    histories = [np.array(values) for values in (response, base_action(run), taken)]
     if not run.dynamic:
         # Rows of corners and of the start stand between the points of the path.
         wanted = parts * (times + 1) - 1
