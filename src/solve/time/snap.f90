@@ -52,7 +52,7 @@ contains
       at_last = resistance
       waits = 0
       tried = huge(1.0_wp)
-      distance_before = huge(1.0_wp)
+      distance_before = sqrt(huge(1.0_wp))
       call self%try_start(state)
       do round = 1, most_rounds
          self%step%now%anchor(:) = self%step%q1
