@@ -191,7 +191,8 @@ class LimitStates(Tabular):
     def to_pandas(self, *, cracking: bool = True) -> DataFrame:
         """Return a row for each state, those of cracking on request: what `LimitState` has."""
         rows = [asdict(state) for state in self if cracking or state.name != "cracking"]
-        units = {"time": "time_s", "displacement": "displacement_m", "force": "force_N"}
+        units = {"time": "time_s" if self.result.dynamic else "point"}
+        units |= {"displacement": "displacement_m", "force": "force_N"}
         frame = data_frame(rows, [field.name for field in fields(LimitState)])
         if not any(state.member for state in self):
             frame = frame.drop(columns=["member", "group", "end", "side"])
@@ -200,8 +201,10 @@ class LimitStates(Tabular):
         return frame.rename(columns=units)
 
     def __str__(self) -> str:
-        table, cracks = self.to_pandas(cracking=False), sum(one.name == "cracking" for one in self)
-        return text_table(table) + (f"\nand {cracks} springs crack" if cracks else "")
+        # Of many springs those that crack hide the others.
+        cracks = sum(state.name == "cracking" for state in self)
+        table = text_table(self.to_pandas(cracking=cracks < 2))
+        return table + (f"\nand {cracks} springs crack" if cracks > 1 else "")
 
     def __repr__(self) -> str:
         names = [state.name for state in self]
