@@ -328,7 +328,7 @@ def test_members_fit_between_their_nodes(rng: Rng) -> float:
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
-@pytest.mark.parametrize("case", [194, 211, 282, 350])
+@pytest.mark.parametrize("case", [194, 211, 261, 282, 322, 350])
 def test_joints_with_one_layer_left_keep_the_path(case: int) -> None:
     """All layers of a joint but one yield or are open: it turns freely about that one."""
     rng = np.random.default_rng(case)
@@ -336,7 +336,9 @@ def test_joints_with_one_layer_left_keep_the_path(case: int) -> None:
     run = rbsdem.cyclic(made, displacement=drifts(rng, made))
     assert run.time.size == 6
     assert sections_off(run) < 1e-9
-    assert gaps(run) < 1e-9
+    assert run.summary["relative_energy_residual"] < 1e-9
+    if made.kinematics == "small":
+        assert gaps(run) < 1e-9
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
@@ -345,6 +347,18 @@ def test_a_search_in_vain_leaves_the_springs_at_their_corner() -> None:
     rng = np.random.default_rng(40)
     made = frame(rng, "capped")
     with pytest.raises(rbsdem.SolveError, match="snaps back"):
+        rbsdem.cyclic(made, displacement=drifts(rng, made))
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+@pytest.mark.parametrize(
+    ("case", "reason"),
+    [(118, "none of 8 combinations of .* lets it go on or back"), (881, "strength .* is used up")],
+)
+def test_a_static_path_that_ends_has_a_reason(case: int, reason: str) -> None:
+    rng = np.random.default_rng(case)
+    made = frame(rng, any_family(rng))
+    with pytest.raises(rbsdem.SolveError, match=reason):
         rbsdem.cyclic(made, displacement=drifts(rng, made))
 
 

@@ -9,11 +9,11 @@ module rbs_solve_static_corner
    use rbs_hysteresis_interaction_joints, only: update_branches
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_straight_motion, only: find_blocked
-   use rbs_solve_static_path, only: static_path, state_of, weakest_spring
+   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, on_the_end
    implicit none
    private
 
-   public :: turn_corner, report_no_line
+   public :: turn_corner, report_no_line, is_spent
 
    !> How often all springs may be changed at once while their least number without room stays the same.
    integer, parameter :: patience = 3
@@ -22,8 +22,7 @@ module rbs_solve_static_corner
    !> of a structure without strength, as a share of its peak.
    real(wp), parameter :: at_rest = 1.0e-6_wp
 
-   !> Most springs whose ways are tried in all combinations on curved paths, and most springs times
-   !> combinations.
+   !> Most springs whose ways are tried in all combinations, and most springs times combinations.
    integer, parameter :: most_tried = 14, most_work = 200000
 
    !> Most sets of gaps.
@@ -47,7 +46,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Springs blocked on their lines in their direction of motion, their number, and that with planes
       integer :: blocked(path%moving), springs_blocked, stopped
-      integer :: changes, fewest, left, i
+      integer :: changes, fewest, left, combinations, i
       logical :: found, may_pass, marked
 
       path%direction = 0
@@ -59,6 +58,7 @@ contains
       found = path%goes_back
       if (found) then
          call pass()
+         if (.not. found) call try_all_ways()
          if (.not. found) call report_snap_back()
          return
       end if
@@ -109,11 +109,8 @@ contains
       end do
       call pass(always=.true.)
       if (found) return
-      if (.not. path%may_go_back) call try_all_ways()
-      if (found) then
-         path%direction = direction
-         return
-      end if
+      call try_all_ways()
+      if (found) return
       if (path%by_force) then
          call report_no_line(path, target, error)
       else
@@ -155,11 +152,15 @@ contains
       end subroutine let_one_unload
 
       subroutine report_snap_back()
+         if (is_spent(path)) then
+            call report_no_line(path, target, error)
+            return
+         end if
          call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
-                          ': no combination of loading and unloading springs was found that lets its '// &
-                          'top go on; '//trim(weakest_spring(path))//' has the least stiffness left. The '// &
-                          'path up to there is kept. Strength that is lost more slowly, or a response in '// &
-                          'time, goes on')
+                          ': none of '//to_text(combinations)//' combinations of loading and unloading '// &
+                          'springs lets it go on or back; '//trim(weakest_spring(path))//' has the least '// &
+                          'stiffness left. The path up to there is kept. Strength that is lost more '// &
+                          'slowly, or a response in time, goes on')
       end subroutine report_snap_back
 
       !> Springs without room on their lines for the present rates, and joints without room on their planes.
@@ -197,9 +198,10 @@ contains
          end do
       end subroutine change_lines
 
-      !> Try both ways of the springs at a corner of a curved path in all combinations, one change at a time
-      !> (Gray code), until all have room: equal springs in series reach their caps at once. Of more springs
-      !> than can be tried, those come first that the search has changed more than once.
+      !> Try both ways of the springs at a corner in all combinations, one change at a time (Gray code), until
+      !> none is blocked: equal springs in series reach their caps at once. A path that may go back takes the
+      !> way forward if there is one. Of more springs than can be tried, those come first that the search has
+      !> changed more than once.
       subroutine try_all_ways()
          integer, allocatable :: tried(:)
          integer :: trial, i, most
@@ -208,19 +210,26 @@ contains
          tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
          most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
          tried = tried(:min(size(tried), most))
-         do trial = 1, 2**size(tried)
-            call path%solve_line(direction, found)
+         combinations = 2**size(tried)
+         path%passes = path%may_go_back
+         do trial = 1, merge(2, 1, path%may_go_back .and. any(path%arrived /= 0))*combinations
+            call path%solve_line(merge(direction, -direction, trial <= combinations), found)
             if (found) then
                call find_stopped()
                found = stopped == 0
-               if (found) return
+               ! A path on which all springs turn back would return as it came.
+               if (trial > combinations) found = found .and. goes_on(path)
+               if (found) exit
             end if
-            ! The bit that changes next in the Gray code.
-            if (trial == 2**size(tried)) exit
-            i = tried(trailz(trial) + 1)
-            call path%springs%leave(i, exit_direction(path%springs, i))
+            if (trial == 2*combinations) exit
+            ! The bit that changes next in the Gray code, which ends one change before it begins.
+            i = min(trailz(trial) + 1, size(tried))
+            if (i > 0) call path%springs%leave(tried(i), exit_direction(path%springs, tried(i)))
          end do
-         found = .false.
+         path%passes = .false.
+         if (.not. found) return
+         path%goes_back = trial > combinations
+         path%direction = merge(-direction, direction, path%goes_back)
       end subroutine try_all_ways
 
    end subroutine turn_corner
@@ -277,7 +286,7 @@ contains
             if (next == 0) exit
          end do
          found = found .and. next == 0
-         if (found) found = any(path%rate(:m)*path%way_in(:m) > 0.0_wp)
+         if (found) found = goes_on(path)
          do i = 1, m
             if (is_back(i)) call path%springs%set_stiffness(i, k(i))
          end do
@@ -345,10 +354,10 @@ contains
                is_back(i) = .false.
                call springs%set_stiffness(i, k(i))
                if (heading == came) return
-               call springs%leave(i, heading)
+               call leave(springs, i, heading)
                crossed(i) = heading
             else
-               call springs%leave(i, heading)
+               call leave(springs, i, heading)
                crossed(i) = heading
                if (heading == came .and. path%one_way(i)) then
                   is_back(i) = .true.
@@ -362,6 +371,16 @@ contains
       end subroutine change
 
    end subroutine follow_through
+
+   !> Put a spring on the line that follows; a line without length, as layers have that unload at once after
+   !> they were loaded again, is left on the way on which it is met.
+   subroutine leave(springs, i, way)
+      type(spring_array), intent(inout) :: springs
+      integer, intent(in) :: i, way
+
+      call springs%leave(i, way)
+      if (springs%last(i) - springs%first(i) <= on_the_end*abs(springs%d(i))) call springs%leave(i, way)
+   end subroutine leave
 
    !> Whether a spring is on an end that belongs to its line.
    pure logical function is_on_closed_end(springs, i, heading)
@@ -389,6 +408,20 @@ contains
       end if
    end function exit_direction
 
+   !> Whether a spring goes on in its direction before the corner.
+   pure logical function goes_on(path)
+      class(static_path), intent(in) :: path
+
+      goes_on = any(path%rate(:path%moving)*path%way_in(:path%moving) > 0.0_wp)
+   end function goes_on
+
+   !> Whether a structure whose displacement is driven has no strength left.
+   pure logical function is_spent(path)
+      class(static_path), intent(in) :: path
+
+      is_spent = .not. path%by_force .and. abs(path%force) <= at_rest*abs(path%task%summary%peak_force)
+   end function is_spent
+
    !> Report why the path cannot be continued.
    subroutine report_no_line(path, target, error)
       class(static_path), intent(in) :: path
@@ -404,7 +437,7 @@ contains
                           'left. Take stiff springs less stiff, a million times the others is rigid '// &
                           'enough, or '// &
                           'fewer bodies')
-      else if (.not. path%by_force .and. abs(path%force) <= at_rest*abs(path%task%summary%peak_force)) then
+      else if (is_spent(path)) then
          call fatal_error(error, analysis_failed, 'the strength of the structure is used up at '// &
                           trim(state_of(path))//': nothing resists its motion to '//to_text(target)// &
                           ' m; '//trim(weakest_spring(path))//' has the least stiffness left. End the '// &

@@ -7,7 +7,7 @@ module rbs_solve_static_straight
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_straight_motion, only: go_along, nearest_end
-   use rbs_solve_static_corner, only: turn_corner
+   use rbs_solve_static_corner, only: turn_corner, report_no_line, is_spent
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, state_of, target_of, weakest_spring, is_on_end, &
                                     on_the_end, serialize_path
@@ -176,6 +176,10 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
 
+      if (is_spent(self)) then
+         call report_no_line(self, target, error)
+         return
+      end if
       call fatal_error(error, analysis_failed, 'the equilibrium path to '//to_text(target)//' m leads '// &
                        'away for good at '//trim(state_of(self))//': beyond the strength of '// &
                        trim(weakest_spring(self))//' a part of the structure falls, which no '// &
