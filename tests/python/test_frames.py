@@ -423,33 +423,6 @@ def test_a_panel_of_one_beam_is_a_spring_at_its_end(rule):
     assert np.abs(one.force[:rows] - other.force[:rows]).max() < 1e-9 * size
 
 
-@pytest.mark.parametrize("rule", RULES)
-def test_a_column_as_a_frame(rule):
-    """Bodies as members with a spring that turns and one that slips: the forces of `Column`."""
-    rng = np.random.default_rng(5)
-    n, length = 3, 1.0
-    turns = [spring(rng, rule, 2e5 * (1 - i / n) + 1e4, 4e-3, options=0) for i in range(n)]
-    slips = Takeda(k_c=5e8, d_c=1e-4, k_y=2e8, d_y=1e-3, k_u=1e7)
-    column = rbsdem.Column(n * length, 1.0, slips, turns, n=n)
-    nodes = [FrameNode("0", 0, 0, "fixed")]
-    nodes += [FrameNode(f"{i + 1}", 0, i + 1.0, push_x=float(i == n - 1)) for i in range(n)]
-    members = [
-        Member(
-            f"body {i + 1}", f"{i}", f"{i + 1}",
-            FrameMember(E, 1e3, INERTIA, flexure={0.0: turns[i]}, shear=slips, interior="rigid"),
-        )
-        for i in range(n)
-    ]  # fmt: skip
-    frame = Frame(nodes=nodes, members=members, pattern="nodes")
-    path = [0.01, -0.02, 0.04, -0.03, 0.05, 0.0]
-    one, other = followed(column, path), followed(frame, path)
-    # Springs whose forces fall may have several answers, and end a path in either.
-    rows = min(other.time.size, one.time.size)
-    assert rows == len(path) or rule in ("peak_oriented", "pinching")
-    size = np.abs(one.force).max()
-    assert np.abs(other.force[:rows] - one.force[:rows]).max() < 1e-11 * size
-
-
 def drawn(depth: float) -> RectangularSection:
     """A section with bars in all faces."""
     bars = Layout(8, 0.018, Steel(446e6, 702e6))
