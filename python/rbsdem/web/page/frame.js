@@ -236,9 +236,9 @@ function tell(name) {
 function hingesOf(found, row) {
   const reached = new Map(), words = new Map();
   if (byLevels) for (const { member, end, passed } of checks()?.ends ?? []) reached.set(`${member} ${end}`, [member, end, PASSED[passed] ?? "unknown"]);
-  else for (const { member, end, what, step, group } of found.events) {
-    const kind = STATES.findIndex(([name]) => name === what), key = `${member} ${end}`;
-    if (step > found.time[row] || kind < 0 || kind < (words.get(key) ?? 0)) continue;
+  else for (const { member, end, name, time, group } of found.events) {
+    const kind = STATES.findIndex(([state]) => state === name), key = `${member} ${end}`;
+    if (time > found.time[row] || kind < 0 || kind < (words.get(key) ?? 0)) continue;
     words.set(key, kind);
     reached.set(key, [member, group === "member" ? "0.5" : end, STATES[kind][1]]);
   }
