@@ -331,3 +331,18 @@ def test_lanes_leave_uneven_steps_to_runs_alone() -> None:
     )
     assert set(found.status) == {"completed"}
     same_as_alone(found)
+
+
+def test_each_part_of_the_work_has_runs_of_all_scales() -> None:
+    """Else the time left would be that of small scales. Runs of lanes stay in their order."""
+    made: list[float] = []
+
+    def at(result: rbsdem.Result) -> float:
+        made.append(float(np.abs(result.displacement).max()))
+        return made[-1]
+
+    scales = np.linspace(0.01, 0.1, 40)
+    shaken = {"measures": [at], "method": "rk45", "jobs": 1, "scales": scales}
+    found = rbsdem.ensemble(column(n=2), motion(1), **shaken)
+    half = sorted(found.measures["at"].tolist().index(value) for value in made[:20])
+    assert max(np.diff([-1, *half, 40])) <= 3

@@ -178,6 +178,8 @@ _LONGEST = 2.0
 
 #: Runs that advance side by side.
 _LANES = 32
+#: Golden ratio: places of its multiples lie evenly, wherever they are cut off.
+_GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -498,6 +500,9 @@ def _carried_out(
             stack.enter_context(kept.open())
             resumed = kept.read(outcome)
         missing = own[outcome.fates[own] == 0]
+        if not cost[1][missing].any():
+            # Runs of large scales take longer: in every part of the work there are runs of all.
+            missing = missing[np.argsort(_GOLDEN * np.arange(missing.size) % 1.0)]
         each, lanes = (values[missing] for values in cost)
         pace = _TaskSizer(each, lanes, threads)
         show = stack.enter_context(progress_bar(progress, missing.size))
