@@ -200,12 +200,12 @@ contains
    end function stiffness_sums
 
    !> Whether all layers stay on their lines in another position.
-   pure subroutine stay_on_lines(self, d, first, last, one_way, stay)
+   pure subroutine stay_on_lines(self, d, lower, upper, one_way, stay)
       class(layer_joints), intent(inout) :: self
       !> (coordinates)
       real(wp), intent(in), contiguous :: d(:)
-      !> First and last deformations of the lines, whether they are left when the motion turns (springs)
-      real(wp), intent(in), contiguous :: first(:), last(:)
+      !> Lowest and highest deformations of the lines, whether they are left when the motion turns (springs)
+      real(wp), intent(in), contiguous :: lower(:), upper(:)
       integer, intent(in), contiguous :: one_way(:)
       logical, intent(out) :: stay
       real(wp) :: z(2), room
@@ -216,7 +216,7 @@ contains
          associate (i => self%first(j), n => self%last(j), at => self%before + 2*j)
             if (has_room(d(at - 1:at), self%seen(:, j), self%reach(j), self%room(j))) cycle
             z = d(at - 1:at)
-            call find_room(n - i + 1, self%y(i:n), z, first(i:n), last(i:n), room)
+            call find_room(n - i + 1, self%y(i:n), z, lower(i:n), upper(i:n), room)
             stay = room >= 0.0_wp .and. maxval(abs(z)) < out_of_bounds
             if (.not. stay) return
             self%seen(:, j) = z
@@ -235,9 +235,9 @@ contains
    end function has_room
 
    !> Least way of any layer from a motion of the joint to an end of its line, negative beyond it.
-   pure subroutine find_room(n, y, z, first, last, room)
+   pure subroutine find_room(n, y, z, lower, upper, room)
       integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), z(2), first(n), last(n)
+      real(wp), intent(in) :: y(n), z(2), lower(n), upper(n)
       real(wp), intent(out) :: room
       real(wp) :: d
       integer :: i
@@ -246,7 +246,7 @@ contains
       !$omp simd reduction(min:room) private(d)
       do i = 1, n
          d = z(1) + y(i)*z(2)
-         room = min(room, last(i) - d, d - first(i))
+         room = min(room, upper(i) - d, d - lower(i))
       end do
    end subroutine find_room
 

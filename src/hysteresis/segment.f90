@@ -7,7 +7,7 @@ module rbs_hysteresis_segment
    implicit none
    private
 
-   public :: segment, first_on, last_on, upper_end, lower_end
+   public :: segment, lowest_on, highest_on, upper_end, lower_end
 
    !> The line f = f0 + k (d - d0) and the deformations between which it holds.
    !>
@@ -94,37 +94,37 @@ contains
       call stream%item(self%unload_on_reversal)
    end subroutine serialize
 
-   !> The first and the last deformation that belong to a line. At an open end it is the number next to it.
-   pure real(wp) function first_on(line)
+   !> The lowest and the highest deformation that belong to a line. At an open end it is the number next to it.
+   pure real(wp) function lowest_on(line)
       type(segment), intent(in) :: line
 
-      first_on = line%lo
-      if (.not. line%includes_lower_end .and. line%lo > -unbounded) first_on = next_above(line%lo)
-   end function first_on
+      lowest_on = line%lo
+      if (.not. line%includes_lower_end .and. line%lo > -unbounded) lowest_on = next_above(line%lo)
+   end function lowest_on
 
-   pure real(wp) function last_on(line)
+   pure real(wp) function highest_on(line)
       type(segment), intent(in) :: line
 
-      last_on = line%hi
-      if (.not. line%includes_upper_end .and. line%hi < unbounded) last_on = -next_above(-line%hi)
-   end function last_on
+      highest_on = line%hi
+      if (.not. line%includes_upper_end .and. line%hi < unbounded) highest_on = -next_above(-line%hi)
+   end function highest_on
 
-   !> The upper end of a line from the last deformation that belongs to it.
-   elemental real(wp) function upper_end(last, closed)
-      real(wp), intent(in) :: last
+   !> The upper end of a line from the highest deformation that belongs to it.
+   elemental real(wp) function upper_end(highest, closed)
+      real(wp), intent(in) :: highest
       logical, intent(in) :: closed
 
-      upper_end = last
-      if (.not. closed .and. last < unbounded) upper_end = next_above(last)
+      upper_end = highest
+      if (.not. closed .and. highest < unbounded) upper_end = next_above(highest)
    end function upper_end
 
-   !> The lower end of a line from the first deformation that belongs to it.
-   elemental real(wp) function lower_end(first, closed)
-      real(wp), intent(in) :: first
+   !> The lower end of a line from the lowest deformation that belongs to it.
+   elemental real(wp) function lower_end(lowest, closed)
+      real(wp), intent(in) :: lowest
       logical, intent(in) :: closed
 
-      lower_end = first
-      if (.not. closed .and. first > -unbounded) lower_end = -next_above(-first)
+      lower_end = lowest
+      if (.not. closed .and. lowest > -unbounded) lower_end = -next_above(-lowest)
    end function lower_end
 
    !> The next larger number, as `nearest(x, 1.0)` for finite numbers. The latter is a call of the C library,

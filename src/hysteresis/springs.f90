@@ -11,7 +11,7 @@ module rbs_hysteresis_springs
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_layered_layered_joint, only: start_under
    use rbs_hysteresis_rule, only: spring_slot, spring_rules
-   use rbs_hysteresis_segment, only: segment, first_on, last_on, upper_end, lower_end
+   use rbs_hysteresis_segment, only: segment, lowest_on, highest_on, upper_end, lower_end
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
    implicit none
    private
@@ -29,9 +29,9 @@ module rbs_hysteresis_springs
       !> Present deformations (count) [m or rad], and behind them further coordinates of the structure, which
       !> moves as they do; present line: anchor and slope (count)
       real(wp), allocatable :: d(:), d0(:), f0(:), k(:)
-      !> First and last deformation that belong to the present line (count). Where the end itself does not
+      !> Lowest and highest deformation that belong to the present line (count). Where the end itself does not
       !> belong to it, they are the numbers next to it.
-      real(wp), allocatable :: first(:), last(:)
+      real(wp), allocatable :: lower(:), upper(:)
       !> Whether the ends themselves belong to the line (count), see `segment`
       logical, allocatable :: includes_lower_end(:), includes_upper_end(:)
       !> Direction of a branch that unloads on reversal, else 0 (count), see `segment`
@@ -120,7 +120,7 @@ contains
       allocate (self%slot(n), self%unload_on_reversal(n), self%includes_lower_end(n), &
                 self%includes_upper_end(n))
       allocate (self%d(coordinates), self%work(n), self%work_before(n), source=0.0_wp)
-      allocate (self%d0(n), self%f0(n), self%first(n), self%last(n))
+      allocate (self%d0(n), self%f0(n), self%lower(n), self%upper(n))
       allocate (self%k(n), source=0.0_wp)
       allocate (self%work_source(2, n), source=0)
       allocate (self%on_plane(n), source=.false.)
@@ -276,9 +276,9 @@ contains
       if (self%unload_on_reversal(i) == -direction) then
          end_toward = self%d(i)
       else if (direction > 0) then
-         end_toward = upper_end(self%last(i), self%includes_upper_end(i))
+         end_toward = upper_end(self%upper(i), self%includes_upper_end(i))
       else
-         end_toward = lower_end(self%first(i), self%includes_lower_end(i))
+         end_toward = lower_end(self%lower(i), self%includes_lower_end(i))
       end if
    end function end_toward
 
@@ -291,9 +291,9 @@ contains
       integer :: lines
 
       do lines = 1, most_lines
-         if (d > self%last(i)) then
+         if (d > self%upper(i)) then
             call change_line(self, i, 1)
-         else if (d < self%first(i)) then
+         else if (d < self%lower(i)) then
             call change_line(self, i, -1)
          else
             call advance_on_branch(self, i, d)
@@ -315,9 +315,9 @@ contains
       self%work(i) = self%work(i) + f_mean*(d - self%d(i))
       self%d(i) = d
       if (self%unload_on_reversal(i) > 0) then
-         self%first(i) = d
+         self%lower(i) = d
       else if (self%unload_on_reversal(i) < 0) then
-         self%last(i) = d
+         self%upper(i) = d
       end if
    end subroutine advance_on_branch
 
@@ -332,7 +332,7 @@ contains
       line = self%line_of(i)
       if (self%journal%open) then
          call self%journal%keep(i, line, self%slot(i))
-         call self%journal%leave_branch(i, direction, merge(self%last(i), self%first(i), direction > 0))
+         call self%journal%leave_branch(i, direction, merge(self%upper(i), self%lower(i), direction > 0))
       end if
       if (self%unload_on_reversal(i) /= -direction) call advance_on_branch(self, i, &
            merge(line%hi, line%lo, direction > 0))
@@ -356,8 +356,8 @@ contains
       call change_line(self, i, direction)
       if (self%journal%open) self%journal%direction(i) = 0
       ! A branch that unloads on reversal starts at the present deformation, to the last bit.
-      if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
-      if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
+      if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
+      if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
       call sum_up_joint_of(self, i)
    end subroutine leave
 
@@ -446,7 +446,7 @@ contains
       do i = 1, self%count
          if (self%journal%is_kept(i)) then
             call enter_again(self, i)
-         else if (d(i) <= self%last(i) .and. d(i) >= self%first(i)) then
+         else if (d(i) <= self%upper(i) .and. d(i) >= self%lower(i)) then
             cycle
          end if
          call self%advance_to(i, d(i))
@@ -464,8 +464,8 @@ contains
       self%d(i) = self%journal%d_entered(i)
       self%work(i) = self%journal%work_entered(i)
       self%events = self%events + self%journal%branches(i)
-      if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
-      if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
+      if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
+      if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
    end subroutine enter_again
 
    !> Return to the mark. Of springs that pass their present branch again on the way to new deformations,
@@ -502,8 +502,8 @@ contains
          end do
          journal%changed = left
          do i = 1, self%count
-            if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
-            if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
+            if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
+            if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
          end do
       end associate
       if (self%axial_load_varies) call self%fit_planes()
@@ -519,8 +519,8 @@ contains
       call stream%item(self%d0)
       call stream%item(self%f0)
       call stream%item(self%k)
-      call stream%item(self%first)
-      call stream%item(self%last)
+      call stream%item(self%lower)
+      call stream%item(self%upper)
       call stream%item(self%work)
       call stream%item(self%includes_lower_end)
       call stream%item(self%includes_upper_end)
@@ -546,8 +546,8 @@ contains
       line%d0 = self%d0(i)
       line%f0 = self%f0(i)
       line%k = self%k(i)
-      line%lo = lower_end(self%first(i), self%includes_lower_end(i))
-      line%hi = upper_end(self%last(i), self%includes_upper_end(i))
+      line%lo = lower_end(self%lower(i), self%includes_lower_end(i))
+      line%hi = upper_end(self%upper(i), self%includes_upper_end(i))
       if (self%unload_on_reversal(i) > 0) line%lo = self%d(i)
       if (self%unload_on_reversal(i) < 0) line%hi = self%d(i)
       line%includes_lower_end = self%includes_lower_end(i)
@@ -568,8 +568,8 @@ contains
       self%includes_lower_end(i) = line%includes_lower_end
       self%includes_upper_end(i) = line%includes_upper_end
       self%unload_on_reversal(i) = line%unload_on_reversal
-      self%first(i) = first_on(line)
-      self%last(i) = last_on(line)
+      self%lower(i) = lowest_on(line)
+      self%upper(i) = highest_on(line)
       if (self%joints%count == 0) return
       if (self%joints%of(i) > 0) self%joints%is_changed(self%joints%of(i)) = .true.
    end subroutine put_line
@@ -585,8 +585,8 @@ contains
       call put_line(self, i, line)
       self%d(i) = d
       self%work(i) = work
-      if (line%unload_on_reversal > 0) self%first(i) = d
-      if (line%unload_on_reversal < 0) self%last(i) = d
+      if (line%unload_on_reversal > 0) self%lower(i) = d
+      if (line%unload_on_reversal < 0) self%upper(i) = d
       call sum_up_joint_of(self, i)
    end subroutine put
 
@@ -604,8 +604,8 @@ contains
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i
 
-      is_removed = .not. abs(self%k(i)) > 0.0_wp .and. self%first(i) <= -unbounded .and. &
-                    self%last(i) >= unbounded .and. self%unload_on_reversal(i) == 0
+      is_removed = .not. abs(self%k(i)) > 0.0_wp .and. self%lower(i) <= -unbounded .and. &
+                    self%upper(i) >= unbounded .and. self%unload_on_reversal(i) == 0
    end function is_removed
 
    !> Move every spring to a new deformation.
@@ -618,16 +618,16 @@ contains
       if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
-         if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
-             d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
+         if (d(1) <= self%upper(1) .and. d(1) >= self%lower(1) .and. &
+             d(2) <= self%upper(2) .and. d(2) >= self%lower(2)) then
             call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                              self%first, self%last)
+                              self%lower, self%upper)
             return
          end if
       end if
-      if (.not. are_within(self%count, d, self%first, self%last)) then
+      if (.not. are_within(self%count, d, self%lower, self%upper)) then
          do i = 1, self%count
-            if (d(i) > self%last(i) .or. d(i) < self%first(i)) call self%advance_to(i, d(i))
+            if (d(i) > self%upper(i) .or. d(i) < self%lower(i)) call self%advance_to(i, d(i))
          end do
          if (self%stuck) return
       end if
@@ -646,15 +646,15 @@ contains
       stay_on_lines = .not. self%axial_load_varies
       if (.not. stay_on_lines) return
       if (self%joints%count == 0) then
-         stay_on_lines = are_within(self%count, d, self%first, self%last)
+         stay_on_lines = are_within(self%count, d, self%lower, self%upper)
          return
       end if
       do j = 1, size(self%joints%others)
          i = self%joints%others(j)
-         stay_on_lines = d(i) <= self%last(i) .and. d(i) >= self%first(i) .and. abs(d(i)) < out_of_bounds
+         stay_on_lines = d(i) <= self%upper(i) .and. d(i) >= self%lower(i) .and. abs(d(i)) < out_of_bounds
          if (.not. stay_on_lines) return
       end do
-      call self%joints%stay_on_lines(d, self%first, self%last, self%unload_on_reversal, stay_on_lines)
+      call self%joints%stay_on_lines(d, self%lower, self%upper, self%unload_on_reversal, stay_on_lines)
    end function stay_on_lines
 
    !> Move every spring to a deformation on its present line.
@@ -666,37 +666,37 @@ contains
       if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
          call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                           self%first, self%last)
+                           self%lower, self%upper)
          return
       end if
       call advance_all(self, d)
    end subroutine carry_to
 
-   pure logical function are_within(n, d, first, last)
+   pure logical function are_within(n, d, lower, upper)
       integer, intent(in) :: n
-      real(wp), intent(in) :: d(n), first(n), last(n)
+      real(wp), intent(in) :: d(n), lower(n), upper(n)
       integer :: i, outside
 
       outside = 0
       do i = 1, n
-         outside = outside + merge(1, 0, d(i) > last(i) .or. d(i) < first(i) .or. &
+         outside = outside + merge(1, 0, d(i) > upper(i) .or. d(i) < lower(i) .or. &
                                    .not. abs(d(i)) < out_of_bounds)
       end do
       are_within = outside == 0
    end function are_within
 
    !> `advance_on_branch` for the two springs of one body.
-   pure subroutine advance_pair(to, d0, f0, k, unload_on_reversal, d, work, first, last)
+   pure subroutine advance_pair(to, d0, f0, k, unload_on_reversal, d, work, lower, upper)
       integer, intent(in) :: unload_on_reversal(2)
       real(wp), intent(in) :: to(2), d0(2), f0(2), k(2)
-      real(wp), intent(inout) :: d(2), work(2), first(2), last(2)
+      real(wp), intent(inout) :: d(2), work(2), lower(2), upper(2)
       integer :: i
 
       work = work + (f0 + k*(0.5_wp*(to + d) - d0))*(to - d)
       d = to
       do i = 1, 2
-         if (unload_on_reversal(i) > 0) first(i) = to(i)
-         if (unload_on_reversal(i) < 0) last(i) = to(i)
+         if (unload_on_reversal(i) > 0) lower(i) = to(i)
+         if (unload_on_reversal(i) < 0) upper(i) = to(i)
       end do
    end subroutine advance_pair
 
@@ -706,14 +706,14 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       call advance_each(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                        self%first, self%last)
+                        self%lower, self%upper)
       if (size(d) > self%count) self%d(self%count + 1:) = d(self%count + 1:)
    end subroutine advance_all
 
-   pure subroutine advance_each(n, to, d0, f0, k, unload_on_reversal, d, work, first, last)
+   pure subroutine advance_each(n, to, d0, f0, k, unload_on_reversal, d, work, lower, upper)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
-      real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
+      real(wp), intent(inout) :: d(n), work(n), lower(n), upper(n)
       integer :: i
 
       do i = 1, n
@@ -721,8 +721,8 @@ contains
          d(i) = to(i)
       end do
       do i = 1, n
-         if (unload_on_reversal(i) > 0) first(i) = to(i)
-         if (unload_on_reversal(i) < 0) last(i) = to(i)
+         if (unload_on_reversal(i) > 0) lower(i) = to(i)
+         if (unload_on_reversal(i) < 0) upper(i) = to(i)
       end do
    end subroutine advance_each
 
@@ -736,8 +736,8 @@ contains
          call section%read_plane(self%d0(i), self%reference_axial_load(i), self%f0(i), self%k(i), &
                                  self%centre(i))
       end select
-      self%first(i) = -unbounded
-      self%last(i) = unbounded
+      self%lower(i) = -unbounded
+      self%upper(i) = unbounded
       self%unload_on_reversal(i) = 0
       self%version = modulo(self%version + 1, huge(1))
    end subroutine read_plane

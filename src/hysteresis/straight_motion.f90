@@ -22,16 +22,16 @@ contains
       integer :: i
 
       count = 0
-      associate (d => springs%d, first => springs%first, last => springs%last, &
+      associate (d => springs%d, lower => springs%lower, upper => springs%upper, &
                  one_way => springs%unload_on_reversal)
          do i = 1, size(rate)
-            ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
+            ! A spring is beyond the highest deformation of its line where the end itself does not belong to it.
             if (rate(i) > 0.0_wp) then
-               if (d(i) < last(i) .and. one_way(i) >= 0) cycle
-               if (.not. (d(i) > last(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle
+               if (d(i) < upper(i) .and. one_way(i) >= 0) cycle
+               if (.not. (d(i) > upper(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle
             else if (rate(i) < 0.0_wp) then
-               if (d(i) > first(i) .and. one_way(i) <= 0) cycle
-               if (.not. (d(i) < first(i) .or. one_way(i) > 0 .or. springs%includes_lower_end(i))) cycle
+               if (d(i) > lower(i) .and. one_way(i) <= 0) cycle
+               if (.not. (d(i) < lower(i) .or. one_way(i) > 0 .or. springs%includes_lower_end(i))) cycle
             else
                cycle
             end if
@@ -56,15 +56,15 @@ contains
       stride = huge(1.0_wp)
       most = farthest
       ends = 0
-      associate (first => springs%first, last => springs%last)
+      associate (lower => springs%lower, upper => springs%upper)
          do i = 1, size(q)
-            ! The end itself may lie beyond the last deformation of the line: far beyond, where
+            ! The end itself may lie beyond the highest deformation of the line: far beyond, where
             ! the rate is next to nothing.
             if (rate(i) > 0.0_wp) then
-               if (last(i) - q(i) > most*rate(i)) cycle
+               if (upper(i) - q(i) > most*rate(i)) cycle
                clearance = distance(springs%end_toward(i, 1) - q(i), rate(i))
             else if (rate(i) < 0.0_wp) then
-               if (q(i) - first(i) > -most*rate(i)) cycle
+               if (q(i) - lower(i) > -most*rate(i)) cycle
                clearance = distance(q(i) - springs%end_toward(i, -1), -rate(i))
             else
                cycle
@@ -103,33 +103,33 @@ contains
          springs%d(behind:) = q(behind:) + rate(behind:)*stride
       end associate
       call advance_along(moving, q, rate, stride, slack, springs%d0, springs%f0, springs%k, &
-                         springs%unload_on_reversal, springs%d, springs%work, springs%first, springs%last, &
+                         springs%unload_on_reversal, springs%d, springs%work, springs%lower, springs%upper, &
                          near, count)
    end subroutine go_along
 
-   pure subroutine advance_along(n, q, rate, stride, slack, d0, f0, k, unload_on_reversal, d, work, first, &
-                                 last, near, count)
+   pure subroutine advance_along(n, q, rate, stride, slack, d0, f0, k, unload_on_reversal, d, work, lower, &
+                                 upper, near, count)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: q(n), rate(n), stride, slack, d0(n), f0(n), k(n)
-      real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
+      real(wp), intent(inout) :: d(n), work(n), lower(n), upper(n)
       integer, intent(out) :: near(n), count
       real(wp) :: to
       integer :: i
 
       !$omp simd
       do i = 1, n
-         to = min(max(q(i) + rate(i)*stride, first(i)), last(i))
+         to = min(max(q(i) + rate(i)*stride, lower(i)), upper(i))
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
          d(i) = to
       end do
       count = 0
       do i = 1, n
-         if (unload_on_reversal(i) > 0) first(i) = d(i)
-         if (unload_on_reversal(i) < 0) last(i) = d(i)
+         if (unload_on_reversal(i) > 0) lower(i) = d(i)
+         if (unload_on_reversal(i) < 0) upper(i) = d(i)
          if (rate(i) > 0.0_wp) then
-            if (last(i) - d(i) > slack*abs(last(i))) cycle
+            if (upper(i) - d(i) > slack*abs(upper(i))) cycle
          else
-            if (d(i) - first(i) > slack*abs(first(i))) cycle
+            if (d(i) - lower(i) > slack*abs(lower(i))) cycle
          end if
          count = count + 1
          near(count) = i

@@ -94,7 +94,7 @@ contains
                call check_true(error, lines < 100 .or. rule_names(rule) == 'layered', &
                                trim(rule_names(rule))//': few lines in one move')
                call spring%advance_to(1, d(j))
-               call check_true(error, spring%first(1) <= d(j) .and. d(j) <= spring%last(1), &
+               call check_true(error, spring%lower(1) <= d(j) .and. d(j) <= spring%upper(1), &
                                trim(rule_names(rule))//': within the ends')
             end do
             if (allocated(error)) return

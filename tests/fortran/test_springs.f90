@@ -106,8 +106,8 @@ contains
       real(wp) :: point(a%count)
       integer :: j
 
-      call check_same(error, [a%d, a%d0, a%f0, a%k, a%first, a%last, a%work], &
-                      [b%d, b%d0, b%f0, b%k, b%first, b%last, b%work], what)
+      call check_same(error, [a%d, a%d0, a%f0, a%k, a%lower, a%upper, a%work], &
+                      [b%d, b%d0, b%f0, b%k, b%lower, b%upper, b%work], what)
       call check_equal(error, a%events, b%events, what//': events')
       call check_true(error, all(a%unload_on_reversal == b%unload_on_reversal), what//': one-way lines')
       call check_true(error, all((a%includes_lower_end .eqv. b%includes_lower_end) .and. &
@@ -272,8 +272,8 @@ contains
             call check_true(error, moved%events > springs%events, 'a line has changed')
             call springs%move_all(point)
          end if
-         call check_same(error, [springs%d, springs%first, springs%last, springs%work], &
-                         [moved%d, moved%first, moved%last, moved%work], 'carried or moved')
+         call check_same(error, [springs%d, springs%lower, springs%upper, springs%work], &
+                         [moved%d, moved%lower, moved%upper, moved%work], 'carried or moved')
       end do
       call check_true(error, within > 100 .and. within < 2900, 'both happen')
    end subroutine carried

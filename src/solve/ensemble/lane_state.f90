@@ -26,8 +26,8 @@ contains
             y%d0(l, j) = springs%d0(j)
             y%f0(l, j) = springs%f0(j)
             y%k(l, j) = springs%k(j)
-            y%first(l, j) = springs%first(j)
-            y%last(l, j) = springs%last(j)
+            y%lower(l, j) = springs%lower(j)
+            y%upper(l, j) = springs%upper(j)
             y%direction(l, j) = real(springs%unload_on_reversal(j), wp)
          end do
       end associate

@@ -81,8 +81,8 @@ contains
 
       do i = 1, 2
          spring%line = line(i)
-         spring%first = y%first(l, i)
-         spring%last = y%last(l, i)
+         spring%lower = y%lower(l, i)
+         spring%upper = y%upper(l, i)
          spring%d = y%from(l, i)
          spring%work = y%work(l, i)
          if (side_of(spring, y%q(l, i)) == 0) then
@@ -160,8 +160,8 @@ contains
       type(body_spring), intent(inout) :: spring
 
       spring%line = line
-      spring%first = y%first(l, i)
-      spring%last = y%last(l, i)
+      spring%lower = y%lower(l, i)
+      spring%upper = y%upper(l, i)
       spring%d = y%q(l, i)
       spring%work = y%work(l, i)
       spring%direction = 0
@@ -173,8 +173,8 @@ contains
       type(body_spring), intent(in) :: spring
 
       y%work(l, i) = spring%work
-      y%first(l, i) = spring%first
-      y%last(l, i) = spring%last
+      y%lower(l, i) = spring%lower
+      y%upper(l, i) = spring%upper
       y%d0(l, i) = spring%line%d0
       y%f0(l, i) = spring%line%f0
       y%k(l, i) = spring%line%k

@@ -11,7 +11,7 @@ module rbs_solve_one_body_implicit_one_body
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_journal, only: save_memory, return_memory
    use rbs_hysteresis_rule, only: spring_slot
-   use rbs_hysteresis_segment, only: segment, first_on, last_on
+   use rbs_hysteresis_segment, only: segment, lowest_on, highest_on
    use rbs_hysteresis_springs, only: spring_array, most_lines
    use rbs_solve_line_search, only: false_position
    use rbs_solve_one_body_body_damping, only: body_damping
@@ -29,13 +29,13 @@ module rbs_solve_one_body_implicit_one_body
    !> Share of the work of the residual on a correction by which the correction may overshoot.
    real(wp), parameter :: too_far = 0.9_wp
 
-   !> One spring beside its rule: its line, the first and the last deformation that belong to the line,
+   !> One spring beside its rule: its line, the lowest and the highest deformation that belong to the line,
    !> present deformation and work, and how it has come to its line in this step: +1 or -1 by the end of
    !> another, 0 it was on it before. It moves as those of `rbs_hysteresis_springs` do, with the same
    !> bits.
    type :: body_spring
       type(segment) :: line
-      real(wp) :: first = 0.0_wp, last = 0.0_wp, d = 0.0_wp, work = 0.0_wp
+      real(wp) :: lower = 0.0_wp, upper = 0.0_wp, d = 0.0_wp, work = 0.0_wp
       integer :: direction = 0
    end type body_spring
 
@@ -125,8 +125,8 @@ contains
       end associate
       ! NaN fails this comparison too.
       if (.not. (abs(to_1) < out_of_bounds .and. abs(to_2) < out_of_bounds)) return
-      taken = to_1 <= springs%last(1) .and. to_1 >= springs%first(1) .and. &
-              to_2 <= springs%last(2) .and. to_2 >= springs%first(2) .and. &
+      taken = to_1 <= springs%upper(1) .and. to_1 >= springs%lower(1) .and. &
+              to_2 <= springs%upper(2) .and. to_2 >= springs%lower(2) .and. &
               abs(rest_1) <= self%wanted*scale_1 .and. abs(rest_2) <= self%wanted*scale_2
       self%moved = [moved_1, moved_2]
       if (taken) then
@@ -157,7 +157,7 @@ contains
       integer :: i
 
       do i = 1, 2
-         self%start(i) = body_spring(springs%line_of(i), springs%first(i), springs%last(i), springs%d(i), &
+         self%start(i) = body_spring(springs%line_of(i), springs%lower(i), springs%upper(i), springs%d(i), &
                                      springs%work(i))
          self%spring(i) = self%start(i)
       end do
@@ -330,8 +330,8 @@ contains
             call change_line(spring, slot(i), direction, self%spring(2)%work)
             self%events = self%events + 1
             ! A new one-way line starts at the present deformation, to the last bit.
-            if (spring%line%unload_on_reversal > 0) spring%first = spring%d
-            if (spring%line%unload_on_reversal < 0) spring%last = spring%d
+            if (spring%line%unload_on_reversal > 0) spring%lower = spring%d
+            if (spring%line%unload_on_reversal < 0) spring%upper = spring%d
          end do
       end associate
       self%stuck = .true.
@@ -398,9 +398,9 @@ contains
       real(wp), intent(in) :: d
 
       side = 0
-      if (d > spring%last) then
+      if (d > spring%upper) then
          side = 1
-      else if (d < spring%first) then
+      else if (d < spring%lower) then
          side = -1
       end if
    end function side_of
@@ -439,8 +439,8 @@ contains
       associate (line => spring%line)
          spring%work = spring%work + (line%f0 + line%k*(0.5_wp*(d + spring%d) - line%d0))*(d - spring%d)
          spring%d = d
-         if (line%unload_on_reversal > 0) spring%first = d
-         if (line%unload_on_reversal < 0) spring%last = d
+         if (line%unload_on_reversal > 0) spring%lower = d
+         if (line%unload_on_reversal < 0) spring%upper = d
       end associate
    end subroutine advance_on_branch
 
@@ -460,8 +460,8 @@ contains
             call advance_on_branch(spring, merge(line%hi, line%lo, direction > 0))
          end if
          call slot%next_branch(line, direction, flexural_work)
-         spring%first = first_on(line)
-         spring%last = last_on(line)
+         spring%lower = lowest_on(line)
+         spring%upper = highest_on(line)
       end associate
    end subroutine change_line
 

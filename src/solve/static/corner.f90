@@ -379,7 +379,7 @@ contains
       integer, intent(in) :: i, way
 
       call springs%leave(i, way)
-      if (springs%last(i) - springs%first(i) <= on_the_end*abs(springs%d(i))) call springs%leave(i, way)
+      if (springs%upper(i) - springs%lower(i) <= on_the_end*abs(springs%d(i))) call springs%leave(i, way)
    end subroutine leave
 
    !> Whether a spring is on an end that belongs to its line.
@@ -388,9 +388,9 @@ contains
       integer, intent(in) :: i, heading
 
       if (heading > 0) then
-         is_on_closed_end = springs%includes_upper_end(i) .and. springs%d(i) >= springs%last(i)
+         is_on_closed_end = springs%includes_upper_end(i) .and. springs%d(i) >= springs%upper(i)
       else
-         is_on_closed_end = springs%includes_lower_end(i) .and. springs%d(i) <= springs%first(i)
+         is_on_closed_end = springs%includes_lower_end(i) .and. springs%d(i) <= springs%lower(i)
       end if
    end function is_on_closed_end
 

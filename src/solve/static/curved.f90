@@ -283,7 +283,7 @@ contains
          associate (springs => self%springs, trial => self%trial)
             do i = 1, self%moving
                if (springs%on_plane(i)) cycle
-               call springs%advance_on_branch(i, min(max(trial%q(i), springs%first(i)), springs%last(i)))
+               call springs%advance_on_branch(i, min(max(trial%q(i), springs%lower(i)), springs%upper(i)))
                if (.not. is_on_end(springs, i, trial%q(i), direction*trial%rate(i))) cycle
                call springs%arrive(i, merge(1, -1, direction*trial%rate(i) > 0.0_wp))
                self%direction = 0

@@ -508,11 +508,11 @@ contains
       is_on_end = .false.
       ! Most springs are far from their ends, which need not be computed then.
       if (rate > 0.0_wp .and. .not. springs%includes_upper_end(i)) then
-         if (springs%last(i) - d > 2.0_wp*on_the_end*abs(springs%last(i))) return
+         if (springs%upper(i) - d > 2.0_wp*on_the_end*abs(springs%upper(i))) return
          finish = springs%end_toward(i, 1)
          is_on_end = finish - d <= on_the_end*abs(finish)
       else if (rate < 0.0_wp .and. .not. springs%includes_lower_end(i)) then
-         if (d - springs%first(i) > 2.0_wp*on_the_end*abs(springs%first(i))) return
+         if (d - springs%lower(i) > 2.0_wp*on_the_end*abs(springs%lower(i))) return
          finish = springs%end_toward(i, -1)
          is_on_end = d - finish <= on_the_end*abs(finish)
       end if

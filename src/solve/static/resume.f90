@@ -123,7 +123,7 @@ contains
       q = path%springs%d
       ! Where nothing but round-off has been displaced, the lengths of the lines are the scale.
       way = 0.0_wp
-      associate (lower => path%springs%first, upper => path%springs%last)
+      associate (lower => path%springs%lower, upper => path%springs%upper)
          where (lower > -unbounded .and. upper < unbounded) way(:size(lower)) = upper - lower
       end associate
       line_lengths = measure_of(way, way)

@@ -220,8 +220,8 @@ contains
          self%displacement_start = self%displacement - direction*along
          self%force_start = self%force + line%force_correction - direction*along*line%force_rate
          self%q(:) = self%springs%d + line%correction
-         call keep_within(m, self%springs%d, line%correction, self%rate, self%springs%first, &
-                          self%springs%last, self%q)
+         call keep_within(m, self%springs%d, line%correction, self%rate, self%springs%lower, &
+                          self%springs%upper, self%q)
          residual = self%displacement - self%structure%top_displacement(self%q)
          if (self%by_force) then
             self%displacement_start = self%displacement - residual
@@ -253,19 +253,19 @@ contains
 
    !> Round-off of the equilibrium is corrected in full, off the rear end of a line too, or the rest
    !> would be missing at the next corner. More than round-off moves no spring off its line.
-   pure subroutine keep_within(n, d, correction, rate, first, last, q)
+   pure subroutine keep_within(n, d, correction, rate, lower, upper, q)
       integer, intent(in) :: n
-      real(wp), intent(in) :: d(n), correction(n), rate(n), first(n), last(n)
+      real(wp), intent(in) :: d(n), correction(n), rate(n), lower(n), upper(n)
       !> Deformations with their corrections
       real(wp), intent(inout) :: q(n)
       integer :: i
 
       do i = 1, n
          if (abs(correction(i)) > round_off*abs(d(i))) then
-            q(i) = min(max(q(i), first(i)), last(i))
+            q(i) = min(max(q(i), lower(i)), upper(i))
          else
-            if (.not. rate(i) > 0.0_wp) q(i) = max(q(i), first(i))
-            if (.not. rate(i) < 0.0_wp) q(i) = min(q(i), last(i))
+            if (.not. rate(i) > 0.0_wp) q(i) = max(q(i), lower(i))
+            if (.not. rate(i) < 0.0_wp) q(i) = min(q(i), upper(i))
          end if
       end do
    end subroutine keep_within

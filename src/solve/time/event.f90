@@ -47,7 +47,7 @@ contains
       associate (springs => state%springs)
          do i = 1, springs%count
             ! Most springs stay inside their line and do not turn.
-            if (scheme%q(i) >= springs%first(i) .and. scheme%q(i) <= springs%last(i) .and. &
+            if (scheme%q(i) >= springs%lower(i) .and. scheme%q(i) <= springs%upper(i) .and. &
                 state%v(i)*scheme%v(i) > 0.0_wp) cycle
             call find_exit([springs%end_toward(i, -1), springs%end_toward(i, 1)], &
                            springs%unload_on_reversal(i), &

@@ -280,7 +280,7 @@ contains
          direction = 0
          do i = 1, state%springs%count
             ! Most springs stay on their lines.
-            if (q(i) + dq(i) >= state%springs%first(i) .and. q(i) + dq(i) <= state%springs%last(i)) cycle
+            if (q(i) + dq(i) >= state%springs%lower(i) .and. q(i) + dq(i) <= state%springs%upper(i)) cycle
             if (dq(i) > 0.0_wp) then
                ! The rear end of a one-way line is where the spring was put last.
                clearance = state%springs%end_toward(i, 1) - q(i)

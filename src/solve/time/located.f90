@@ -258,8 +258,8 @@ contains
       associate (springs => state%springs)
          do changes = 0, 20 + 10*springs%count
             do i = 1, springs%count
-               if (springs%unload_on_reversal(i) == 0 .and. springs%d(i) > springs%first(i) .and. &
-                   springs%d(i) < springs%last(i)) cycle
+               if (springs%unload_on_reversal(i) == 0 .and. springs%d(i) > springs%lower(i) .and. &
+                   springs%d(i) < springs%upper(i)) cycle
                direction = direction_of(state%v(i))
                if (direction /= 0) then
                   if (.not. goes_on(i, direction)) cycle
