@@ -94,7 +94,7 @@ contains
       call stream%item(self%unload_on_reversal)
    end subroutine serialize
 
-   !> The lowest and the highest deformation that belong to a line. At an open end it is the number next to it.
+   !> The lowest and the highest deformation of a line. At an open end it is the number next to it.
    pure real(wp) function lowest_on(line)
       type(segment), intent(in) :: line
 

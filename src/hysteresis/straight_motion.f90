@@ -25,7 +25,7 @@ contains
       associate (d => springs%d, lower => springs%lower, upper => springs%upper, &
                  one_way => springs%unload_on_reversal)
          do i = 1, size(rate)
-            ! A spring is beyond the highest deformation of its line where the end itself does not belong to it.
+            ! A spring is beyond the highest deformation of its line where the end itself is no part of it.
             if (rate(i) > 0.0_wp) then
                if (d(i) < upper(i) .and. one_way(i) >= 0) cycle
                if (.not. (d(i) > upper(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle

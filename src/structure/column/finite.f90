@@ -135,7 +135,7 @@ contains
       real(wp) :: transverse, tension, moment, slip, opening
       real(wp) :: transverse_above, tension_above, moment_above, slip_above, opening_above
       !> The body: rates of rotation, and those of the body below
-      real(wp) :: spin, turn, spin_below, turn_below
+      real(wp) :: spin, spin_rate, spin_below, spin_rate_below
       !> Acceleration of the bottom of the body, along t and e of the body below, and of the top of that
       real(wp) :: bottom(2), below(2)
       real(wp) :: per_mass, per_inertia, s, c, separation, flexibility, rotation
@@ -157,7 +157,7 @@ contains
       end if
       rotation = 0.0_wp
       spin_below = 0.0_wp
-      turn_below = 0.0_wp
+      spin_rate_below = 0.0_wp
       flexibility = 0.0_wp
       held = [0.0_wp, 1.0_wp]
       ! In a frame of reference that falls, the ground accelerates upward by gravity.
@@ -199,19 +199,19 @@ contains
          spin = spin_below + v(i, flexure)
          associate (lower => column%lower(i), upper => column%upper(i))
             ! Moments about the centroid, of joint i at its bottom and of joint i + 1.
-            turn = (lower*(transverse*c - tension*s) - moment &
+            spin_rate = (lower*(transverse*c - tension*s) - moment &
                     + transverse_above*(upper + opening_above) - tension_above*slip_above &
                     + moment_above)*per_inertia
             ! b'' = c'' - lower (om' t - om^2 e), along t and e of the body below.
             bottom(1) = (transverse_above*c + tension_above*s - transverse)*per_mass &
-                        + lower*(spin**2*s - turn*c)
+                        + lower*(spin**2*s - spin_rate*c)
             bottom(2) = (tension_above*c - transverse_above*s - tension)*per_mass &
-                        + lower*(spin**2*c + turn*s)
+                        + lower*(spin**2*c + spin_rate*s)
             a(i, shear) = bottom(1) - below(1) + slip*spin_below**2
-            a(i, flexure) = turn - turn_below
-            separation = bottom(2) - below(2) + 2.0_wp*v(i, shear)*spin_below + slip*turn_below
+            a(i, flexure) = spin_rate - spin_rate_below
+            separation = bottom(2) - below(2) + 2.0_wp*v(i, shear)*spin_below + slip*spin_rate_below
             if (column%opens) then
-               a(i, shear) = a(i, shear) - 2.0_wp*v(i, axial)*spin_below - opening*turn_below
+               a(i, shear) = a(i, shear) - 2.0_wp*v(i, axial)*spin_below - opening*spin_rate_below
                a(i, axial) = separation + opening*spin_below**2
             else
                work(i, sine) = s
@@ -236,7 +236,7 @@ contains
                end if
             end if
             ! T'' = c'' + upper (om' t - om^2 e), along its own t and e.
-            below(1) = (transverse_above - transverse*c + tension*s)*per_mass + upper*turn
+            below(1) = (transverse_above - transverse*c + tension*s)*per_mass + upper*spin_rate
             below(2) = (tension_above - transverse*s - tension*c)*per_mass - upper*spin**2
          end associate
          transverse = transverse_above
@@ -245,7 +245,7 @@ contains
          slip = slip_above
          opening = opening_above
          spin_below = spin
-         turn_below = turn
+         spin_rate_below = spin_rate
       end do
    end subroutine accelerate_under_forces
 
@@ -268,7 +268,7 @@ contains
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)
       real(wp), intent(inout) :: work(column%n, 5), a(column%n, column%kinds)
-      real(wp) :: turn, turn_below, below, above, along
+      real(wp) :: spin_rate, spin_rate_below, below, above, along
       logical :: positive
       integer :: i, n
 
@@ -276,54 +276,54 @@ contains
       call solve_tridiagonal(work(:, diagonal), work(:, off_diagonal), work(:, reaction), positive)
       ! Only numbers beyond all meaning get here; the caller sees that the state is not finite.
       if (.not. positive) work(:, reaction) = ieee_value(a(1, shear), ieee_quiet_nan)
-      turn_below = 0.0_wp
+      spin_rate_below = 0.0_wp
       below = 0.0_wp
       do i = 1, n
          if (column%held .and. i >= n - 1) then
-            call add_last_reaction(column, work, i, turn_below, below, a)
+            call add_last_reaction(column, work, i, spin_rate_below, below, a)
             cycle
          end if
-         turn = column%lower(i)*work(i, sine)*work(i, reaction)
+         spin_rate = column%lower(i)*work(i, sine)*work(i, reaction)
          above = 0.0_wp
          if (i < n) then
             above = work(i + 1, reaction)
-            turn = turn + q(i + 1, shear)*above
+            spin_rate = spin_rate + q(i + 1, shear)*above
          end if
-         turn = -turn/column%inertia(i)
+         spin_rate = -spin_rate/column%inertia(i)
          along = work(i, sine)/column%mass(i)
-         a(i, shear) = a(i, shear) + above*along - column%lower(i)*work(i, cosine)*turn - below
-         a(i, flexure) = a(i, flexure) + turn - turn_below
-         below = work(i, reaction)*along + column%upper(i)*turn
-         turn_below = turn
+         a(i, shear) = a(i, shear) + above*along - column%lower(i)*work(i, cosine)*spin_rate - below
+         a(i, flexure) = a(i, flexure) + spin_rate - spin_rate_below
+         below = work(i, reaction)*along + column%upper(i)*spin_rate
+         spin_rate_below = spin_rate
       end do
    end subroutine add_reactions
 
    !> The same at the two bodies that the joint of a held top is between. Its reaction acts along the fixed
    !> vertical, at the top of the body below.
-   pure subroutine add_last_reaction(column, work, i, turn_below, below, a)
+   pure subroutine add_last_reaction(column, work, i, spin_rate_below, below, a)
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: work(column%n, 5)
       !> n - 1 or n
       integer, intent(in) :: i
       !> Acceleration of the body below in rotation, and of its top along its normal, from the reactions
-      real(wp), intent(inout) :: turn_below, below
+      real(wp), intent(inout) :: spin_rate_below, below
       real(wp), intent(inout) :: a(column%n, column%kinds)
-      real(wp) :: turn, along
+      real(wp) :: spin_rate, along
       integer :: n
 
       n = column%n
       associate (s => work(:, sine), c => work(:, cosine), force => work(:, reaction))
          if (i < n) then
-            turn = (column%upper(i)*s(n)*force(n) - column%lower(i)*s(i)*force(i))/column%inertia(i)
+            spin_rate = (column%upper(i)*s(n)*force(n) - column%lower(i)*s(i)*force(i))/column%inertia(i)
             a(i, shear) = a(i, shear) + force(n)*(c(i)*s(n) + s(i)*c(n))/column%mass(i) &
-                          - column%lower(i)*c(i)*turn - below
-            a(i, flexure) = a(i, flexure) + turn - turn_below
-            below = (force(i)*s(i) + force(n)*s(n))/column%mass(i) + column%upper(i)*turn
-            turn_below = turn
+                          - column%lower(i)*c(i)*spin_rate - below
+            a(i, flexure) = a(i, flexure) + spin_rate - spin_rate_below
+            below = (force(i)*s(i) + force(n)*s(n))/column%mass(i) + column%upper(i)*spin_rate
+            spin_rate_below = spin_rate
          else
             along = (force(n)*c(n) - force(n - 1)*c(n - 1))/column%mass(n - 1)
             a(n, shear) = a(n, shear) - c(n)*below + s(n)*along
-            a(n, flexure) = a(n, flexure) - turn_below
+            a(n, flexure) = a(n, flexure) - spin_rate_below
          end if
       end associate
    end subroutine add_last_reaction
@@ -336,7 +336,7 @@ contains
       type(moving_body), intent(inout) :: body
       real(wp) :: along_t, along_e, bottom(2)
 
-      call turn(column, q, i, body)
+      call rotate(column, q, i, body)
       ! The joint of a held top moves along its directions, which are fixed.
       if (column%held .and. i == column%n) body%spin = 0.0_wp
       along_t = v(i, shear)
@@ -357,7 +357,7 @@ contains
    end subroutine climb
 
    !> Rotation of body i from that of body i - 1.
-   pure subroutine turn(column, q, i, body)
+   pure subroutine rotate(column, q, i, body)
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)
       integer, intent(in) :: i
@@ -384,10 +384,10 @@ contains
       body%rotation = rotation
       body%s = s
       body%c = c
-   end subroutine turn
+   end subroutine rotate
 
-   !> Place of body i, whose rotation is known, from that of body i - 1: its bottom, and its top.
-   pure subroutine place(column, q, i, body, bottom, top)
+   !> Position of body i, whose rotation is known, from that of body i - 1: its bottom, and its top.
+   pure subroutine locate(column, q, i, body, bottom, top)
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)
       integer, intent(in) :: i
@@ -399,7 +399,7 @@ contains
       bottom = top + q(i, shear)*[body%c_below, -body%s_below]
       if (column%opens) bottom = bottom + q(i, axial)*[body%s_below, body%c_below]
       top = bottom + column%length(i)*[body%s, body%c]
-   end subroutine place
+   end subroutine locate
 
    !> Kinetic energy relative to the ground [J].
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
@@ -520,7 +520,7 @@ contains
       top = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
-         call place(self, d, i, body, bottom, top)
+         call locate(self, d, i, body, bottom, top)
          if (i == 1) foot = bottom
          lever = bottom + self%lower(i)*[body%s, body%c] - foot
          momentum = momentum + self%mass(i)*(body%centroid(1)*lever(2) - body%centroid(2)*lever(1)) &
@@ -560,41 +560,41 @@ contains
 
       top = 0.0_wp
       do i = 1, self%n
-         call turn(self, d, i, body)
-         call place(self, d, i, body, bottom, top)
+         call rotate(self, d, i, body)
+         call locate(self, d, i, body, bottom, top)
       end do
    end function top_place
 
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), a(:)
-      real(wp) :: rotation, spin, turn, s, c, along_t, along_e
+      real(wp) :: rotation, spin, spin_rate, s, c, along_t, along_e
       integer :: i, n
 
       n = self%n
       acceleration = 0.0_wp
       rotation = 0.0_wp
       spin = 0.0_wp
-      turn = 0.0_wp
+      spin_rate = 0.0_wp
       do i = 1, n
          if (i == n .and. self%held) then
             rotation = 0.0_wp
             spin = 0.0_wp
-            turn = 0.0_wp
+            spin_rate = 0.0_wp
          end if
          s = sin(rotation)
          c = cos(rotation)
          along_t = a(i) - d(i)*spin**2
-         along_e = -2.0_wp*v(i)*spin - d(i)*turn
+         along_e = -2.0_wp*v(i)*spin - d(i)*spin_rate
          if (self%opens) then
-            along_t = along_t + 2.0_wp*v(2*n + i)*spin + d(2*n + i)*turn
+            along_t = along_t + 2.0_wp*v(2*n + i)*spin + d(2*n + i)*spin_rate
             along_e = along_e + a(2*n + i) - d(2*n + i)*spin**2
          end if
          rotation = rotation + d(n + i)
          spin = spin + v(n + i)
-         turn = turn + a(n + i)
+         spin_rate = spin_rate + a(n + i)
          acceleration = acceleration + along_t*c + along_e*s &
-                        + self%length(i)*(cos(rotation)*turn - sin(rotation)*spin**2)
+                        + self%length(i)*(cos(rotation)*spin_rate - sin(rotation)*spin**2)
       end do
    end function top_acceleration
 
