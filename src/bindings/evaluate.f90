@@ -25,7 +25,7 @@ module rbs_bindings_evaluate
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_structure_frame_frame, only: frame_type
-   use rbs_structure_spring_place, only: flexure, axial, layer
+   use rbs_structure_spring_location, only: flexure, axial, layer
    use rbs_structure_structure, only: structure_type, horizontal
    use rbs_version, only: version
    implicit none
@@ -241,13 +241,13 @@ contains
       call text%append(line)
       allocate (place(0), stiffness(0))
       do i = 1, frame%member_springs
-         if (frame%place(i)%kind /= layer) then
-            group = kinds(frame%place(i)%kind)
+         if (frame%location(i)%kind /= layer) then
+            group = kinds(frame%location(i)%kind)
             if (i > frame%member_springs - count(frame%beam_rotation > 0)) group = 'panel'
             call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
          else if (frame%heads(i)) then
             ! About the centre of stiffness of its layers [N m/rad], and axially [N/m]
-            associate (e => frame%element(frame%place(i)%member), joint => frame%place(i)%joint)
+            associate (e => frame%element(frame%location(i)%member), joint => frame%location(i)%joint)
                first = e%first(joint)
                last = e%first(joint + 1) - 1
                associate (k => frame%initial_stiffness(e%before + first:e%before + last), &
@@ -271,8 +271,8 @@ contains
          character(len=*), intent(in) :: kind, rule
          real(c_double), intent(in) :: k
 
-         call text%append(trim(frame%place(i)%owner)//' '//trim(kind)//' '//trim(rule)//tab)
-         place = [place, frame%spring_place(i)]
+         call text%append(trim(frame%location(i)%owner)//' '//trim(kind)//' '//trim(rule)//tab)
+         place = [place, frame%position_ratio(i)]
          stiffness = [stiffness, k]
       end subroutine add_spring
    end subroutine list_parts

@@ -179,8 +179,8 @@ contains
             ! Deformations, then velocities; none: at rest.
             start => request%array('initial')
             if (size(start) > 0) then
-               initial%deformation = start(:size(structure%place))
-               initial%velocity = start(size(structure%place) + 1:)
+               initial%deformation = start(:size(structure%location))
+               initial%velocity = start(size(structure%location) + 1:)
                initial%opening_given = request%wants('opening_given')
             end if
             run%recorder%expected = plan%rows(output%every)

@@ -46,19 +46,19 @@ module rbs_hysteresis_spring_record
       procedure :: make
       procedure :: initial_stiffness
       procedure :: same_as
-      procedure :: place => place_of_spring
+      procedure :: where_given
    end type spring_record
 
 contains
 
    !> Beginning of a message on the spring: 'line 4: ', or nothing where it is not from a file.
-   subroutine place_of_spring(self, text)
+   subroutine where_given(self, text)
       class(spring_record), intent(in) :: self
       character(len=:), allocatable, intent(out) :: text
 
       text = ''
       if (self%line > 0) text = 'line '//to_text(self%line)//': '
-   end subroutine place_of_spring
+   end subroutine where_given
 
    !> Give a joint its layers.
    pure subroutine set_layers(self, y, spring)

@@ -189,7 +189,7 @@ contains
 
          history%name = path(index(path, '/', back=.true.) + 1:)
          do
-            begin = file%place()
+            begin = file%position()
             call file%next_line(first, last, found)
             if (.not. found) exit
             if (.not. is_blank(file%text(first:last))) exit
@@ -238,7 +238,7 @@ contains
          integer :: first, last, rows, i, begin(2)
          logical :: found
 
-         begin = file%place()
+         begin = file%position()
          rows = 0
          do
             call file%next_line(first, last, found)

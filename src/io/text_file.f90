@@ -41,7 +41,7 @@ module rbs_io_text_file
       integer, private :: at = 1
    contains
       procedure :: next_line
-      procedure :: place
+      procedure :: position
       procedure :: go_back
    end type text_file
 
@@ -219,23 +219,23 @@ contains
    end subroutine next_line
 
    !> The present position, for `go_back`.
-   pure function place(self)
+   pure function position(self)
       class(text_file), intent(in) :: self
-      integer :: place(2)
+      integer :: position(2)
 
-      place = [self%at, self%line]
-   end function place
+      position = [self%at, self%line]
+   end function position
 
    !> Go back to a position, by default to the start of the file.
-   subroutine go_back(self, place)
+   subroutine go_back(self, position)
       class(text_file), intent(inout) :: self
-      integer, intent(in), optional :: place(2)
+      integer, intent(in), optional :: position(2)
 
       self%at = 1
       self%line = 0
-      if (present(place)) then
-         self%at = place(1)
-         self%line = place(2)
+      if (present(position)) then
+         self%at = position(1)
+         self%line = position(2)
       end if
    end subroutine go_back
 

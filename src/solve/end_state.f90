@@ -15,7 +15,7 @@ module rbs_solve_end_state
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_place, only: spring_name
+   use rbs_structure_spring_location, only: spring_name
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -110,7 +110,7 @@ contains
       call find_stamp(structure, first(2:3))
       first(6) = structure%n
       first(7) = structure%kinematics
-      first(8) = size(structure%place)
+      first(8) = size(structure%location)
       call self%stream%save()
       call self%stream%item(first)
       call checkpoint%serialize(self%stream)
@@ -182,7 +182,7 @@ contains
 
       call self%check(structure, error)
       if (allocated(error)) return
-      allocate (checkpoint%axial_force(size(structure%place)), checkpoint%v(structure%coordinates), &
+      allocate (checkpoint%axial_force(size(structure%location)), checkpoint%v(structure%coordinates), &
                 source=0.0_wp)
       call self%stream%restore()
       call self%stream%item(first)
@@ -297,7 +297,7 @@ contains
       crushed_joint = springs%crushed_joint()
       if (crushed_joint == 0) return
       call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                       trim(spring_name(structure%place(crushed_joint)))//' cannot carry the axial '// &
+                       trim(spring_name(structure%location(crushed_joint)))//' cannot carry the axial '// &
                        'load of '//to_text(axial_force(crushed_joint))//' N in the state that the first '// &
                        'analysis ended in; give a smaller axial_load')
    end subroutine put_under

@@ -14,7 +14,7 @@ module rbs_structure_structure
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
-   use rbs_structure_spring_place, only: spring_place
+   use rbs_structure_spring_location, only: spring_location
    implicit none
    private
 
@@ -80,7 +80,7 @@ module rbs_structure_structure
       real(wp), allocatable :: reach(:)
       !> Where the springs are, their rules and initial stiffness, and the constant axial force at each,
       !> compression positive [N] (springs)
-      type(spring_place), allocatable :: place(:)
+      type(spring_location), allocatable :: location(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
       !> Joints whose layers are springs
@@ -333,7 +333,7 @@ contains
       integer :: inside
 
       inside = merge(structure%coordinates, 0, structure%tangent_numbers > 0)
-      allocate (self%a(structure%coordinates), self%f(size(structure%place)), &
+      allocate (self%a(structure%coordinates), self%f(size(structure%location)), &
                 self%force(structure%unknowns), self%work(structure%work_size), &
                 self%axial(structure%axial_count), &
                 self%correction(inside), self%anchor(inside), source=0.0_wp)
@@ -490,9 +490,9 @@ contains
       real(wp), intent(in), contiguous :: value(:)
       type(error_type), allocatable, intent(inout) :: error
 
-      if (allocated(error) .or. size(value) == size(self%place)) return
+      if (allocated(error) .or. size(value) == size(self%location)) return
       call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
-                       to_text(size(self%place))//' springs; give one for each')
+                       to_text(size(self%location))//' springs; give one for each')
    end subroutine check_initial
 
    !> Refuse a structure without inertia.
@@ -656,15 +656,15 @@ contains
       work = 0.0_wp
    end function work_of_dead_load
 
-   !> The spring of a kind that comes in a place among those of the kind; 0 if there are not so many.
+   !> The spring of a kind with a number among those of the kind; 0 if there are not so many.
    pure integer function spring_of(self, kind, number) result(i)
       class(structure_type), intent(in) :: self
       integer, intent(in) :: kind, number
       integer :: counted
 
       counted = 0
-      do i = 1, size(self%place)
-         if (self%place(i)%kind == kind) counted = counted + 1
+      do i = 1, size(self%location)
+         if (self%location(i)%kind == kind) counted = counted + 1
          if (counted == number) return
       end do
       i = 0
@@ -678,8 +678,8 @@ contains
       real(wp), intent(in), contiguous :: axial_force(:)
       integer :: work_source(2, size(axial_force))
 
-      work_source(1, :) = self%place%work_source
-      work_source(2, :) = self%place%last_work_source
+      work_source(1, :) = self%location%work_source
+      work_source(2, :) = self%location%last_work_source
       call springs%create(self%rules, work_source, axial_force, self%coordinates, self%joints)
    end subroutine create_springs
 

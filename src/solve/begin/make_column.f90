@@ -3,7 +3,7 @@ module rbs_solve_begin_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_spring_place, only: flexure
+   use rbs_structure_spring_location, only: flexure
    use rbs_hysteresis_layered_layered_joint, only: check_axial_load
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_column_new_column, only: new_column

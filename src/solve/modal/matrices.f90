@@ -11,7 +11,7 @@ module rbs_solve_modal_matrices
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_chain_matrices, only: symmetric_mass, paper_mass, geometric_stiffness
    use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
-   use rbs_structure_spring_place, only: flexure
+   use rbs_structure_spring_location, only: flexure
    use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
@@ -117,7 +117,7 @@ contains
          allocate (matrices%unknown(m))
          names = [character(len=9) :: 'slip_', merge('theta_   ', 'rotation_', paper), 'opening_']
          do i = 1, m
-            matrices%unknown(i) = trim(names(column%place(i)%kind))//to_text(column%place(i)%joint)
+            matrices%unknown(i) = trim(names(column%location(i)%kind))//to_text(column%location(i)%joint)
          end do
          call transform(column, matrices%mass)
          call transform(column, matrices%stiffness)

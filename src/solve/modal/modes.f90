@@ -13,7 +13,7 @@ module rbs_solve_modal_modes
    use rbs_base_text, only: to_text
    use rbs_structure_column_column_record, only: most_modes
    use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
-   use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_spring_location, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, horizontal
    implicit none
    private
@@ -165,11 +165,11 @@ contains
          shape = found
          along = -structure%work_of(horizontal, shape)
       else if (opens) then
-         shape = unpack(found(::2), structure%place%kind == axial, shape)
+         shape = unpack(found(::2), structure%location%kind == axial, shape)
          along = sum(shape)
       else
-         shape = unpack(found(::2), structure%place%kind == shear, shape)
-         shape = unpack(found(2::2), structure%place%kind == flexure, shape)
+         shape = unpack(found(::2), structure%location%kind == shear, shape)
+         shape = unpack(found(2::2), structure%location%kind == flexure, shape)
          along = structure%top_displacement(shape)
       end if
       shape = sign(1.0_wp, along)*shape

@@ -6,7 +6,7 @@ module rbs_solve_static_curve
    use rbs_hysteresis_interaction_joints, only: line_list
    use rbs_solve_static_curved_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
-   use rbs_structure_spring_place, only: shear, flexure
+   use rbs_structure_spring_location, only: shear, flexure
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -60,7 +60,7 @@ contains
 
       if (.not. allocated(self%turns)) then
          allocate (self%turns(size(near%d)), source=.false.)
-         self%turns(:size(near%q)) = structure%place%kind == flexure
+         self%turns(:size(near%q)) = structure%location%kind == flexure
       end if
       self%length = far%t - near%t
       self%near = near
@@ -95,7 +95,7 @@ contains
       least(2) = least(1)/structure%total_height
       do i = 1, size(rate)
          rate(i) = merge(point%rate(i), 0.0_wp, abs(point%rate(i)) > least(merge(2, 1, &
-              structure%place(i)%kind == flexure)))
+              structure%location(i)%kind == flexure)))
       end do
    end function clean
 
@@ -105,7 +105,7 @@ contains
       class(structure_type), intent(in) :: structure
       real(wp) :: change(size(self%near%q)), turn, step
 
-      associate (slips => structure%place%kind == shear, height => structure%total_height)
+      associate (slips => structure%location%kind == shear, height => structure%total_height)
          change = self%far%q - self%near%q
          turn = structure%largest_turn(change)
          step = max(turn, maxval(abs(change), mask=slips)/height)

@@ -18,7 +18,7 @@ module rbs_solve_static_curved
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_turn
    use rbs_solve_static_curved_search, only: curve_search, find_event, find_point, find_turn, find_works, &
-                                             layer_of, no_progress, place, round_off, work_of_joint
+                                             layer_of, move_to, no_progress, round_off, work_of_joint
    use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, &
                                     serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
@@ -166,7 +166,7 @@ contains
       if (.not. allocated(self%current%d)) then
          allocate (self%current%d(size(self%curve%lines%joint)), self%current%v(size(self%curve%lines%joint)))
       end if
-      call place(self, self%current)
+      call move_to(self, self%current)
       way = abs(self%goal - self%current%t)
       turn = self%structure%largest_turn(self%current%rate)
       length = min(way, self%next_length)

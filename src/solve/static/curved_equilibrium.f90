@@ -25,7 +25,7 @@ module rbs_solve_static_curved_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type, small, finite
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_place, only: shear, flexure, opening => axial
+   use rbs_structure_spring_location, only: shear, flexure, opening => axial
    implicit none
    private
 
@@ -151,7 +151,7 @@ contains
          if (springs%axial_load_varies) then
             self%f(:) = self%f - springs%centre*(point%axial_load + self%above - springs%reference_axial_load)
             do j = 1, size(springs%layered)
-               i = self%column%place(springs%layered(j))%index*self%per
+               i = self%column%location(springs%layered(j))%index*self%per
                self%pushed(i) = self%pushed(i) + springs%centre(springs%layered(j))
                i = i - self%per
                if (i > 0) self%pushed(i) = self%pushed(i) - springs%centre(springs%layered(j))

@@ -12,7 +12,7 @@ module rbs_solve_static_curved_search
    private
 
    public :: curve_search, find_event, find_point, find_turn, find_works
-   public :: layer_of, no_progress, place, round_off, work_of_joint
+   public :: layer_of, move_to, no_progress, round_off, work_of_joint
 
    !> Round-off of a displacement or force, as a share of the largest.
    real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
@@ -79,14 +79,14 @@ contains
    end subroutine find_event
 
    !> Deformations and rates of springs and layers at a point.
-   subroutine place(self, point)
+   subroutine move_to(self, point)
       class(curve_search), intent(in) :: self
       type(path_point), intent(inout) :: point
 
       call place_lines(self%springs, self%curve%lines, point%q, &
                        point%axial_load + self%equilibrium%above, point%rate, point%axial_rate, &
                        point%d, point%v)
-   end subroutine place
+   end subroutine move_to
 
    !> The layer of a joint that is on the end of its line at the point that is tried, 0 for none.
    pure integer function layer_of(self, joint)
@@ -137,7 +137,7 @@ contains
             trial%q = trial%q + change
             trial%force = trial%force + equilibrium%force_correction
             trial%axial_load = trial%axial_load + equilibrium%ratio*equilibrium%force_correction
-            call place(self, trial)
+            call move_to(self, trial)
             if (with_events) call find_event(self, limit, change)
             share = equilibrium%size_of(change, trial%q - change)
             found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)

@@ -17,7 +17,7 @@ module rbs_solve_static_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_place, only: flexure, axial
+   use rbs_structure_spring_location, only: flexure, axial
    use rbs_structure_structure, only: structure_type, lateral, signals
    implicit none
    private
@@ -118,13 +118,13 @@ contains
       self%structure => structure
       self%of_dead_load = of_dead_load
       m = structure%unknowns
-      springs = size(structure%place)
+      springs = size(structure%location)
       self%moving = springs
       self%refines = structure%tangent_numbers == 0
       self%still = structure%is_held
       if (self%refines) then
          ! Axial springs of a chain keep still, and with them the last unknowns.
-         self%moving = count(structure%place%kind /= axial)
+         self%moving = count(structure%location%kind /= axial)
          self%still(self%moving + 1:) = .true.
       end if
       self%has_still = any(self%still)
@@ -133,7 +133,7 @@ contains
          associate (of => structure%group(i))
             ! The group of a frame without springs has none.
             if (of%last_spring < of%first_spring) cycle
-            if (structure%place(of%first_spring)%kind /= flexure) cycle
+            if (structure%location(of%first_spring)%kind /= flexure) cycle
             self%reach(of%first:of%first + (of%count - 1)*of%step:of%step) = structure%total_height
          end associate
       end do
@@ -502,7 +502,7 @@ contains
             self%f(i) = structure%arm(i)*force - (springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i)))
             if (self%is_dense) self%f(i) = self%f(i) - sum(self%geometric(:, i)*d)
             self%unbalance = max(self%unbalance, abs(self%f(i))/merge(structure%total_height, 1.0_wp, &
-                                                                      structure%place(i)%kind == flexure))
+                                                                      structure%location(i)%kind == flexure))
          end do
       end associate
    end subroutine find_unbalance

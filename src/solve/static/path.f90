@@ -15,7 +15,7 @@ module rbs_solve_static_path
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_task, only: task_type
    use rbs_structure_channel, only: energy_type, response_type
-   use rbs_structure_spring_place, only: spring_name, axial, flexure
+   use rbs_structure_spring_location, only: spring_name, axial, flexure
    use rbs_structure_structure, only: structure_type, finite
    implicit none
    private
@@ -234,13 +234,13 @@ contains
       integer :: i
 
       do i = 1, self%springs%count
-         if (self%structure%place(i)%kind /= axial) cycle
+         if (self%structure%location(i)%kind /= axial) cycle
          tension = -self%structure%constant_axial(i)
          call self%springs%load_to(i, tension, found)
          if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
-         call fatal_error(error, analysis_failed, trim(spring_name(self%structure%place(i)))//" (rule '"// &
-                          trim(self%springs%rules%name(self%springs%rules%of(i)))//"') cannot carry the "// &
-                          trim(merge('compression', 'tension    ', tension < 0.0_wp))//' of '// &
+         call fatal_error(error, analysis_failed, trim(spring_name(self%structure%location(i)))//" (rule "// &
+                          "'"//trim(self%springs%rules%name(self%springs%rules%of(i)))//"') cannot carry "// &
+                          'the '//trim(merge('compression', 'tension    ', tension < 0.0_wp))//' of '// &
                           to_text(abs(tension))//' N from axial load and weight: it has no stiffness '// &
                           'left. Change axial_load, or give the joint a spring that holds')
          return
@@ -283,7 +283,7 @@ contains
          end if
          crushed_joint = self%springs%crushed_joint()
          if (crushed_joint > 0) then
-            task%summary%lost_joint = self%structure%place(crushed_joint)%index
+            task%summary%lost_joint = self%structure%location(crushed_joint)%index
             call fall_of(self%springs, crushed_joint, task%summary%fall)
             ! This ends the path.
             if (allocated(failure)) deallocate (failure)
@@ -342,10 +342,10 @@ contains
 
       member = self%structure%next_failed_member(self%springs)
       if (member == 0) return
-      associate (place => self%structure%place)
+      associate (location => self%structure%location)
          call fatal_error(failure, analysis_failed, 'member '// &
-                          trim(place(findloc(place%member, member, dim=1))%owner)//' has failed in shear '// &
-                          'and loses its axial load here (failure_drift), '//trim(state_of(self))// &
+                          trim(location(findloc(location%member, member, dim=1))%owner)//' has failed in '// &
+                          'shear and loses its axial load here (failure_drift), '//trim(state_of(self))// &
                           '. Nothing static follows: use a response in time, in which the others take '// &
                           'the load, or the frame without the member')
       end associate
@@ -576,7 +576,7 @@ contains
       associate (structure => path%structure, m => path%moving)
          left = path%springs%k(:m)/structure%initial_stiffness(:m)
          text = 'its elastic stiffness'
-         if (minval(left) < 1.0_wp) text = spring_name(structure%place(minloc(left, dim=1)))
+         if (minval(left) < 1.0_wp) text = spring_name(structure%location(minloc(left, dim=1)))
       end associate
    end function weakest_spring
 
@@ -592,10 +592,10 @@ contains
       self%at_begin = missing_work
       self%largest_place = no_digits*structure%total_height
       self%largest_force = no_digits*maxval(abs(structure%constant_axial))
-      allocate (self%share(size(structure%place)))
+      allocate (self%share(size(structure%location)))
       do i = 1, size(self%share)
-         self%share(i) = merge(1.0_wp/structure%total_height, 1.0_wp, structure%place(i)%kind == flexure)
-         if (structure%place(i)%kind == axial) self%share(i) = 0.0_wp
+         self%share(i) = merge(1.0_wp/structure%total_height, 1.0_wp, structure%location(i)%kind == flexure)
+         if (structure%location(i)%kind == axial) self%share(i) = 0.0_wp
          d = no_way*structure%total_height*self%share(i)
          self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2

@@ -53,7 +53,7 @@ contains
       !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
          type(checkpoint_type) :: checkpoint
-         real(wp) :: axial_force(size(path%structure%place)), residual
+         real(wp) :: axial_force(size(path%structure%location)), residual
          type(energy_type) :: energy
          logical :: goes_on
 

@@ -64,9 +64,9 @@ contains
          call equilibrium%create(loaded, .false.)
          call trace_straight(loaded, equilibrium, by_force, target, task, error)
          if (allocated(error) .and. equilibrium%unstable > 0) then
-            associate (place => structure%place)
+            associate (location => structure%location)
                error%message = error%message//'. Member '// &
-                               trim(place(findloc(place%member, equilibrium%unstable, dim=1))%owner)// &
+                               trim(location(findloc(location%member, equilibrium%unstable, dim=1))%owner)// &
                                ' snaps back: its springs soften faster than the rest of it gives back; '// &
                                'give it a softer rest, or springs that soften less'
             end associate

@@ -37,7 +37,7 @@ contains
       type(method_type) :: method
 
       method = method_named(plan%method)
-      seconds = steps_of(plan, method)*(1.0_wp + share_of_spring*size(structure%place))*method%body_step
+      seconds = steps_of(plan, method)*(1.0_wp + share_of_spring*size(structure%location))*method%body_step
       if (structure%kinematics == finite) seconds = cost_of_finite*seconds
    end function expected_seconds
 

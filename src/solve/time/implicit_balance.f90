@@ -15,7 +15,7 @@ module rbs_solve_time_implicit_balance
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_spring_place, only: flexure
+   use rbs_structure_spring_location, only: flexure
    use rbs_structure_structure, only: structure_type, motion_result, unknown_group, lateral, signals
    implicit none
    private
@@ -112,7 +112,7 @@ contains
 
       associate (structure => state%motion%structure)
          m = structure%unknowns
-         springs = size(structure%place)
+         springs = size(structure%location)
          if (.not. allocated(self%v0)) then
             allocate (self%v0(m), self%a0(m), self%g0(m), self%v1(m), self%a1(m), self%g1(m), self%r(m), &
                       self%moved(m), self%q1(structure%coordinates), &
@@ -125,7 +125,7 @@ contains
             if (allocated(structure%reach)) then
                self%unit_factor = 1.0_wp/structure%reach
                self%spring_factor = merge(1.0_wp/structure%total_height, 1.0_wp, &
-                                        structure%place%kind == flexure)
+                                        structure%location%kind == flexure)
                call set_stiffness(structure, self%spring_factor, self%stiff)
             end if
          end if
@@ -463,7 +463,7 @@ contains
       class(step_tangent), intent(out) :: self
       class(structure_type), intent(in) :: structure
 
-      allocate (self%stiffness(structure%unknowns), self%k(size(structure%place)), source=0.0_wp)
+      allocate (self%stiffness(structure%unknowns), self%k(size(structure%location)), source=0.0_wp)
       call self%matrix%create(structure%unknowns, structure%half_width)
       if (structure%tangent_numbers == 0) return
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%matrix%band)

@@ -22,7 +22,7 @@ module rbs_solve_time_implicit_finite
    use rbs_solve_time_implicit_balance, only: family_type
    use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_spring_place, only: shear, flexure, tension => axial
+   use rbs_structure_spring_location, only: shear, flexure, tension => axial
    implicit none
    private
 

@@ -13,7 +13,7 @@ module rbs_solve_time_located
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
-   use rbs_structure_spring_place, only: spring_name
+   use rbs_structure_spring_location, only: spring_name
    implicit none
    private
 
@@ -92,9 +92,9 @@ contains
                call fatal_error(error, analysis_failed, 'the step of '//to_text(part)//' s at time '// &
                                 to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
                                 to_text(self%tolerance)//'; the largest error is in '// &
-                                trim(spring_name(state%motion%structure%place(i)))//'. Rows up to there '// &
-                                "are kept. Give a larger tolerance, or method = 'generalised_alpha' for "// &
-                                'a stiff column')
+                                trim(spring_name(state%motion%structure%location(i)))//'. Rows up to '// &
+                                "there are kept. Give a larger tolerance, or method = 'generalised_alpha' "// &
+                                'for a stiff column')
                return
             end if
          end do
@@ -304,7 +304,7 @@ contains
       integer, intent(in) :: i
       type(error_type), allocatable, intent(inout) :: error
 
-      call fatal_error(error, analysis_failed, trim(spring_name(state%motion%structure%place(i)))// &
+      call fatal_error(error, analysis_failed, trim(spring_name(state%motion%structure%location(i)))// &
                        ' changes its line again and again at time '//to_text(state%begin + state%time)// &
                        " s without moving. Rows up to there are kept; try method = 'newmark'")
    end subroutine report_standstill

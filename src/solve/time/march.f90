@@ -15,7 +15,7 @@ module rbs_solve_time_march
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_structure_channel, only: energy_type, response_type
-   use rbs_structure_spring_place, only: spring_name
+   use rbs_structure_spring_location, only: spring_name
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -112,7 +112,7 @@ contains
                if (part == parts) state%clock = finish
                crushed_joint = state%springs%crushed_joint()
                if (crushed_joint > 0) then
-                  task%summary%lost_joint = state%motion%structure%place(crushed_joint)%index
+                  task%summary%lost_joint = state%motion%structure%location(crushed_joint)%index
                end if
                ends = task%summary%lost_joint > 0 .or. state%monitor%collapsed
                ! A joint may have lost its axial load, or the column may have collapsed, within the step.
@@ -153,10 +153,10 @@ contains
          type(motion_result), intent(inout) :: now
 
          task%summary%remark = 'at time '//to_text(state%begin + state%time)//' s '// &
-                               trim(spring_name(state%motion%structure%place(state%runaway)))// &
+                               trim(spring_name(state%motion%structure%location(state%runaway)))// &
                                ' slides or turns away: its member no longer carries its dead load, or '// &
                                'the moments of its ends'
-         task%summary%fallen_member = state%motion%structure%place(state%runaway)%member
+         task%summary%fallen_member = state%motion%structure%location(state%runaway)%member
          state%monitor%collapsed = .true.
          call keep_last(now)
       end subroutine end_with_fall
@@ -239,14 +239,14 @@ contains
       type(summary_type), intent(inout) :: summary
 
       summary%snaps = state%snaps
-      summary%snap_member = state%motion%structure%place(state%snap_spring)%member
+      summary%snap_member = state%motion%structure%location(state%snap_spring)%member
       summary%snap_time = state%snap_time
       associate (before => summary%remark, structure => state%motion%structure)
          if (before /= '') before = '; '//before
          summary%remark = 'members snapped from one equilibrium to another in '//to_text(state%snaps)// &
                           ' step(s), which lost '//to_text(state%in_snaps)//' J; the most, '// &
                           to_text(state%largest_snap)//' J, was lost at time '//to_text(state%snap_time)// &
-                          ' s, where '//trim(spring_name(structure%place(state%snap_spring)))// &
+                          ' s, where '//trim(spring_name(structure%location(state%snap_spring)))// &
                           ' moved farthest'//trim(before)
       end associate
    end subroutine report_snaps

@@ -9,7 +9,7 @@ module rbs_solve_time_monitor
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_motion, only: equation_of_motion, motion_result
-   use rbs_structure_spring_place, only: shear, flexure, layer
+   use rbs_structure_spring_location, only: shear, flexure, layer
    implicit none
    private
 
@@ -107,7 +107,7 @@ contains
          ! Behind the flexural springs come layers of joints.
          if (self%watch(i)%turns == 0) then
             self%watch(i)%turns = max(motion%structure%spring_of(layer, self%watch(i)%joint - &
-                                                   count(motion%structure%place%kind == flexure)), 1)
+                                                   count(motion%structure%location%kind == flexure)), 1)
          end if
       end do
       self%peaks_type = peaks_type()

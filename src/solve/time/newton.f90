@@ -9,7 +9,7 @@ module rbs_solve_time_newton
    use rbs_base_text, only: to_text
    use rbs_solve_line_search, only: false_position
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
-   use rbs_structure_spring_place, only: spring_name
+   use rbs_structure_spring_location, only: spring_name
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -161,7 +161,7 @@ contains
          call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
                           to_text(state%begin + state%time)//' s does not converge although it was cut '// &
                           to_text(cuts)//' times; '// &
-                          trim(spring_name(state%motion%structure%place(max(self%busiest, 1))))// &
+                          trim(spring_name(state%motion%structure%location(max(self%busiest, 1))))// &
                           ' is the busiest. Rows up to there are kept, the last good state is that of '// &
                           'this time. '//trim(remedy(state%motion%structure)))
          return

@@ -48,7 +48,7 @@ contains
       class(structure_type), intent(in) :: structure
       integer :: m
 
-      m = size(structure%place)
+      m = size(structure%location)
       self%order = 5
       allocate (self%q(m), self%v(m), self%error_q(m), self%error_v(m))
       allocate (self%rate_q(m, stages), self%rate_v(m, stages))

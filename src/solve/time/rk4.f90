@@ -45,7 +45,7 @@ contains
       integer :: m
 
       self%order = 4
-      m = size(structure%place)
+      m = size(structure%location)
       allocate (self%q(m), self%v(m), self%stage_q(m), self%stage_v(m))
       call self%now%create(structure)
       column => column_of_one_body(structure)

@@ -9,7 +9,7 @@ module rbs_solve_time_start
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
-   use rbs_structure_spring_place, only: spring_name, axial
+   use rbs_structure_spring_location, only: spring_name, axial
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -36,7 +36,7 @@ contains
       type(time_plan), intent(inout) :: plan
       type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_force(size(structure%place)), residual, largest(4)
+      real(wp) :: axial_force(size(structure%location)), residual, largest(4)
       integer :: i
 
       call create_state(state, structure, loads, plan%begin, error)
@@ -104,7 +104,7 @@ contains
          checkpoint%displacement = structure%top_displacement(state%q)
          checkpoint%force = state%load(lateral)
          checkpoint%axial_load = structure%axial_load + state%load(top_axial)
-         checkpoint%axial_force = [(structure%axial_force(i, state%load), i=1, size(structure%place))]
+         checkpoint%axial_force = [(structure%axial_force(i, state%load), i=1, size(structure%location))]
          checkpoint%v = state%v
          checkpoint%input = state%of_loads
          checkpoint%damping = state%of_damping
@@ -170,7 +170,7 @@ contains
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_force(size(structure%place))
+      real(wp) :: axial_force(size(structure%location))
       integer :: i
 
       state%loads = loads
@@ -216,11 +216,11 @@ contains
       load = state%load
       load(vertical) = 0.0_wp
       do i = 1, state%springs%count
-         if (state%motion%structure%place(i)%kind /= axial) cycle
+         if (state%motion%structure%location(i)%kind /= axial) cycle
          tension = -state%motion%structure%axial_force(i, load)
          call state%springs%load_to(i, tension, found)
          if (.not. found) then
-            call fatal_error(error, analysis_failed, trim(spring_name(state%motion%structure%place(i)))// &
+            call fatal_error(error, analysis_failed, trim(spring_name(state%motion%structure%location(i)))// &
                              ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
                              'positive) at the start; change axial_load or the spring, or give the '// &
                              'openings at the start')

@@ -4,7 +4,7 @@ module rbs_structure_column_chain_matrices
    use rbs_base_kinds, only: wp
    use rbs_structure_column_chain, only: geometric_forces
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_spring_location, only: shear, flexure, axial
    implicit none
    private
 

@@ -23,7 +23,7 @@ module rbs_structure_column_column
    use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_place, only: flexure
+   use rbs_structure_spring_location, only: flexure
    use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, &
                                       power_of_patterns, small, pdelta, &
                                       finite, lateral, horizontal, vertical, top_axial, signals
@@ -141,7 +141,7 @@ contains
       self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
       ! Layered joints and axial springs carry the axial load of load and weight above them.
       do i = self%n + 1, self%unknowns
-         self%constant_axial(i) = self%compression(self%place(i)%index)
+         self%constant_axial(i) = self%compression(self%location(i)%index)
       end do
    end subroutine put_under
 
@@ -240,7 +240,7 @@ contains
       real(wp), intent(in) :: load(:)
 
       axial_force = self%constant_axial(spring) + load(top_axial) &
-                    + load(vertical)*self%lifted_joint(self%place(spring)%index)
+                    + load(vertical)*self%lifted_joint(self%location(spring)%index)
    end function axial_force
 
    !> Add B' diag(k) B.
@@ -396,7 +396,7 @@ contains
       if (upright) along = max(along, abs(self%axial_load + load(top_axial)))
       about = 0.0_wp
       do j = 1, springs%count
-         if (self%place(j)%kind == flexure) then
+         if (self%location(j)%kind == flexure) then
             about = max(about, abs(springs%force(j)))
          else
             along = max(along, abs(springs%force(j)))
@@ -406,7 +406,7 @@ contains
       about = (about + along*reach)/minval(self%inertia)
       along = along/minval(self%mass) + abs(load(horizontal)) + about*reach
       if (upright) along = along + abs(load(vertical)) + self%gravity
-      scale = merge(about, along, self%place(spring)%kind == flexure)
+      scale = merge(about, along, self%location(spring)%kind == flexure)
    end function acceleration_scale
 
    !> Refuse axial loads and vertical motions that do nothing.

@@ -297,7 +297,7 @@ contains
          character(len=*), intent(in) :: full_name, name, place
          character(len=:), allocatable :: from
 
-         call spring%place(from)
+         call spring%where_given(from)
          call spring%validate(from//full_name, messages)
          if (suits(spring%rule, place) .or. .not. any(rule_names == spring%rule)) return
          call messages%add(from//'column: the '//name//" spring cannot be of the rule '"// &

@@ -21,7 +21,7 @@ module rbs_structure_column_finite
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_tridiagonal
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_spring_location, only: shear, flexure, axial
    use rbs_structure_structure, only: motion_result, signals, lateral, horizontal, vertical, top_axial
    implicit none
    private

@@ -7,7 +7,7 @@ module rbs_structure_column_new_column
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_hysteresis_spring_record, only: add_rules
-   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
+   use rbs_structure_spring_location, only: spring_location, shear, flexure, axial
    use rbs_structure_structure, only: unknown_group, lateral, horizontal, vertical, top_axial
    implicit none
    private
@@ -171,18 +171,18 @@ contains
          integer :: i, joint, n
 
          n = column%n
-         allocate (column%place(column%unknowns))
+         allocate (column%location(column%unknowns))
          allocate (column%constant_axial(column%unknowns), source=0.0_wp)
          allocate (column%at(3, n), source=0)
          do i = 1, n
             column%at(:2, i) = [i, n + i]
             ! A shear spring may ask for the work of the flexural one of its joint.
             joint = merge(i - 1, i, column%footing)
-            column%place(i) = spring_place(shear, 1, joint, n + i, n + i, i)
-            column%place(n + i) = spring_place(flexure, 1, joint, index=i)
+            column%location(i) = spring_location(shear, 1, joint, n + i, n + i, i)
+            column%location(n + i) = spring_location(flexure, 1, joint, index=i)
             if (.not. column%opens) cycle
             column%at(axial, i) = 2*n + i
-            column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
+            column%location(2*n + i) = spring_location(axial, 1, joint, index=i)
          end do
          call add_rules(column%rules, spec%shear, n)
          call add_rules(column%rules, spec%flexure, n)

@@ -52,7 +52,7 @@ module rbs_structure_frame_frame
       !> Share of the displacement of a node in the drifts of the storeys below and above it (2, nodes) [1/m]
       real(wp), allocatable :: storey_share(:, :)
       !> Where the springs of the members are, in shares of the clear length (inside)
-      real(wp), allocatable :: spring_place(:)
+      real(wp), allocatable :: position_ratio(:)
       !> Whether a spring is the first layer of a joint (inside)
       logical, allocatable :: heads(:)
       !> Springs listed in rows, by kind; of a joint of layers the first one, which gives rotation and opening

@@ -73,7 +73,7 @@ contains
       end do
       do i = 1, size(record%spring)
          associate (s => record%spring(i))
-            call s%spring%place(from)
+            call s%spring%where_given(from)
             kind = findloc(group_of == s%group, .true., dim=1)
             name = from//trim(place_of(kind))//' spring of '
             if (count([s%kind, s%node, s%panel] /= '') /= 1) then

@@ -6,7 +6,7 @@ module rbs_structure_frame_frame_kinds
    use rbs_structure_frame_frame_checks, only: group_of, is_rigid
    use rbs_structure_frame_frame_record, only: kind_record, frame_spring
    use rbs_structure_frame_new_frame, only: frame_member
-   use rbs_structure_spring_place, only: shear, flexure, axial, layer
+   use rbs_structure_spring_location, only: shear, flexure, axial, layer
    implicit none
    private
 
@@ -43,7 +43,7 @@ contains
       real(wp) :: rigidity(2)
       integer :: i, j, k, group
 
-      allocate (m%kind(0), m%joint(0), m%place(0), m%y(0), m%spring(0))
+      allocate (m%kind(0), m%joint(0), m%position(0), m%y(0), m%spring(0))
       rigidity = clear*stiffness_of(kind, clear)
       if (is_rigid(kind, spring)) rigidity = clear*rigid*stiffest
       m%axial = rigidity(1)
@@ -116,15 +116,15 @@ contains
       associate (bends => m%kind == flexure .or. m%kind == layer)
          can_be_lost = any(m%kind == layer .or. m%kind == axial) .and. any(bends)
          if (can_be_lost) can_be_lost = any(m%kind == shear) .or. &
-                                        maxval(m%place, mask=bends) > minval(m%place, mask=bends)
+                                        maxval(m%position, mask=bends) > minval(m%position, mask=bends)
       end associate
    end function can_be_lost
 
    !> Append a spring, or the layers of a joint.
-   subroutine append_spring(m, kind, place, spring)
+   subroutine append_spring(m, kind, position, spring)
       type(frame_member), intent(inout) :: m
       integer, intent(in) :: kind
-      real(wp), intent(in) :: place
+      real(wp), intent(in) :: position
       type(spring_record), intent(in) :: spring
       type(spring_record), allocatable :: longer(:)
       integer :: i, joint, layers, n
@@ -142,7 +142,7 @@ contains
          m%y = [m%y, 0.0_wp]
       end if
       m%joint = [m%joint, spread(joint, 1, layers)]
-      m%place = [m%place, spread(place, 1, layers)]
+      m%position = [m%position, spread(position, 1, layers)]
       allocate (longer(n + layers))
       longer(:n) = m%spring
       if (spring%rule == 'layered') then

@@ -2,7 +2,7 @@
 submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
    use rbs_base_check, only: is_given
    use rbs_structure_frame_element_balance, only: energy_of_rest, chord_rotation
-   use rbs_structure_spring_place, only: shear, flexure
+   use rbs_structure_spring_location, only: shear, flexure
    implicit none
 
    !> Share of the height of a storey that a node may sink.
@@ -52,7 +52,7 @@ contains
          drift = abs(chord_rotation(e, x))
          has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
          do i = e%before + 1, e%before + e%bending
-            if (frame%place(i)%kind /= shear) cycle
+            if (frame%location(i)%kind /= shear) cycle
             if (springs%rules%list(springs%rules%of(i))%rule%has_yielded(springs%slot(i)%memory)) has_failed &
                = .true.
          end do
@@ -115,7 +115,7 @@ contains
          spring = self%joints%others(j)
          if (spring > self%member_springs) exit
          if (abs(d(spring)) < min(self%height, farthest)) cycle
-         if (abs(d(spring)) > merge(farthest, self%height, self%place(spring)%kind == flexure)) return
+         if (abs(d(spring)) > merge(farthest, self%height, self%location(spring)%kind == flexure)) return
       end do
       spring = 0
    end procedure unbounded_spring

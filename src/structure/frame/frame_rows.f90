@@ -1,7 +1,7 @@
 !> Rows of results of a frame: its channels and their values.
 submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_rows
    use rbs_structure_frame_element_balance, only: chord_rotation
-   use rbs_structure_spring_place, only: shear, axial
+   use rbs_structure_spring_location, only: shear, axial
    implicit none
 
 contains
@@ -130,7 +130,7 @@ contains
       real(wp), intent(in), contiguous :: f(:)
 
       associate (first => self%member_springs + 1)
-         force = sum(f(first:), mask=self%place(first:)%kind == shear)
+         force = sum(f(first:), mask=self%location(first:)%kind == shear)
       end associate
    end function ground_force
 

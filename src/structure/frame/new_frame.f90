@@ -9,14 +9,14 @@ module rbs_structure_frame_new_frame
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_frame_numbering, only: order_nodes
-   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial, layer
+   use rbs_structure_spring_location, only: spring_location, shear, flexure, axial, layer
    use rbs_structure_structure, only: unknown_group, pdelta, lateral, horizontal, vertical, signals
    implicit none
    private
 
    public :: frame_node, frame_member, new_frame, is_beam
 
-   !> A node: place [m], whether supports hold it (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
+   !> A node: position [m], supports (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
    type :: frame_node
       character(len=name_length) :: name = ''
       !> Floor of the grid, -1 for a node that is none of it
@@ -46,10 +46,10 @@ module rbs_structure_frame_new_frame
       !> flexibility of E I
       real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
       logical :: lumped = .false.
-      !> Springs: kind, joint, place in shares of the clear length, parameters; those that open come last.
+      !> Springs: kind, joint, position in shares of the clear length, parameters; those that open come last.
       !> Layers of a joint follow one another, with their distances from its middle [m]
       integer, allocatable :: kind(:), joint(:)
-      real(wp), allocatable :: place(:), y(:)
+      real(wp), allocatable :: position(:), y(:)
       type(spring_record), allocatable :: spring(:)
       !> Dead load downward per length along x [N/m]
       real(wp) :: load = 0.0_wp
@@ -104,7 +104,7 @@ contains
       call number_joints(frame, member)
       frame%coordinates = frame%joints%before + 2*frame%joints%count
       associate (springs => frame%springs, inside => frame%member_springs)
-         allocate (spring(springs), frame%place(springs), frame%spring_place(inside), &
+         allocate (spring(springs), frame%location(springs), frame%position_ratio(inside), &
                    frame%ground(springs - inside))
          allocate (frame%arm(frame%coordinates), frame%constant_axial(springs), source=0.0_wp)
          direction = 1
@@ -238,7 +238,7 @@ contains
                if (node(i)%ground(j)%rule /= '') then
                   last = last + 1
                   frame%ground(last - frame%member_springs) = at
-                  frame%place(last) = spring_place(kind_of(j), 0, 0, index=i, owner='node '//node(i)%name)
+                  frame%location(last) = spring_location(kind_of(j), 0, 0, 0, 0, i, 'node '//node(i)%name)
                   spring(last) = node(i)%ground(j)
                end if
                associate (push => [node(i)%push, 0.0_wp])
@@ -331,10 +331,10 @@ contains
                allocate (e%share(2, e%bending), source=0.0_wp)
                do j = 1, size(m%kind)
                   spring(before + j) = m%spring(j)
-                  frame%spring_place(before + j) = m%place(j)
-                  frame%place(before + j) = spring_place(m%kind(j), i, m%joint(j), index=i, owner=m%name)
-                  if (m%kind(j) == shear) call assign_work_source(m, j, before, frame%place(before + j))
-                  if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
+                  frame%position_ratio(before + j) = m%position(j)
+                  frame%location(before + j) = spring_location(m%kind(j), i, m%joint(j), 0, 0, i, m%name)
+                  if (m%kind(j) == shear) call assign_work_source(m, j, before, frame%location(before + j))
+                  if (m%kind(j) == flexure) e%share(:, j) = [m%position(j) - 1.0_wp, m%position(j)]
                   if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
                end do
                if (any(m%kind == layer)) call set_joints(e, m, clear, frame)
@@ -348,19 +348,19 @@ contains
    end subroutine set_elements
 
    !> The nearest flexural spring, or joint of layers, of a member: its work weakens a shear spring.
-   pure subroutine assign_work_source(m, spring, before, place)
+   pure subroutine assign_work_source(m, spring, before, location)
       type(frame_member), intent(in) :: m
       !> Number in the member, and of springs before the member
       integer, intent(in) :: spring, before
-      type(spring_place), intent(inout) :: place
+      type(spring_location), intent(inout) :: location
       integer :: nearest
 
       associate (bends => m%kind == flexure .or. m%kind == layer)
          if (.not. any(bends)) return
-         nearest = minloc(abs(m%place - m%place(spring)), dim=1, mask=bends)
+         nearest = minloc(abs(m%position - m%position(spring)), dim=1, mask=bends)
          associate (joint => m%joint == m%joint(nearest))
-            place%work_source = before + findloc(joint, .true., dim=1)
-            place%last_work_source = before + findloc(joint, .true., dim=1, back=.true.)
+            location%work_source = before + findloc(joint, .true., dim=1)
+            location%last_work_source = before + findloc(joint, .true., dim=1, back=.true.)
          end associate
       end associate
    end subroutine assign_work_source
@@ -390,8 +390,8 @@ contains
             call e%lay_out(frame%tangent_numbers)
          end associate
          spring(at) = node(i)%panel
-         frame%spring_place(at) = 0.0_wp
-         frame%place(at) = spring_place(flexure, 0, 1, index=i, owner=node(i)%name)
+         frame%position_ratio(at) = 0.0_wp
+         frame%location(at) = spring_location(flexure, 0, 1, index=i, owner=node(i)%name)
       end do
    end subroutine set_panels
 
@@ -402,7 +402,7 @@ contains
 
       do kind = 1, 3
          frame%listed(kind)%spring = pack([(i, i=1, frame%member_springs)], &
-                                          frame%place(:frame%member_springs)%kind == kind &
+                                          frame%location(:frame%member_springs)%kind == kind &
                                           .or. (frame%heads .and. kind /= shear))
       end do
    end subroutine list_springs
@@ -429,7 +429,7 @@ contains
          e%motion(j) = e%before + i
          e%is_single(j) = m%kind(i) /= layer
          if (.not. e%is_single(j)) e%motion(j) = frame%joints%before + 2*frame%joints%of(e%before + i) - 1
-         moment = [0.0_wp, m%place(i) - 1.0_wp, m%place(i)]
+         moment = [0.0_wp, m%position(i) - 1.0_wp, m%position(i)]
          select case (m%kind(i))
          case (layer)
             e%arm(1, 1, j) = 1.0_wp
@@ -459,7 +459,7 @@ contains
       per_length = m%load*abs(axis(1))
       down = per_length*axis(1)
       do j = 1, size(m%kind)
-         share = m%place(j)
+         share = m%position(j)
          at = frame%element(i)%before + j
          if (m%kind(j) == flexure) frame%dead_force(at) = -down*clear**2*share*(1.0_wp - share)/2.0_wp
          if (frame%heads(at)) call bend_layers(-down*clear**2*share*(1.0_wp - share)/2.0_wp, &

@@ -1,16 +1,16 @@
 !> Where a spring is in a structure. Nobody else finds a spring by index arithmetic.
-module rbs_structure_spring_place
+module rbs_structure_spring_location
    implicit none
    private
 
-   public :: spring_place, spring_name
+   public :: spring_location, spring_name
    public :: shear, flexure, axial, layer
 
    !> Kinds of springs, by the deformation that they resist: slip, relative rotation, opening; in frames the
    !> layers of a joint are springs of their own, which open by w + y theta.
    integer, parameter :: shear = 1, flexure = 2, axial = 3, layer = 4
 
-   type :: spring_place
+   type :: spring_location
       !> `shear`, `flexure`, `axial` or `layer`
       integer :: kind = 0
       !> Member, 1 for a column, 0 for the panel of a node, and joint of it from the bottom up;
@@ -23,28 +23,28 @@ module rbs_structure_spring_place
       integer :: index = 0
       !> Name of the member, or of the node that a spring from the ground belongs to; blank for a column
       character(len=40) :: owner = ''
-   end type spring_place
+   end type spring_location
 
 contains
 
    !> Which spring it is, for messages: 'the shear spring of joint 3'.
-   pure character(len=80) function spring_name(place) result(name)
-      type(spring_place), intent(in) :: place
+   pure character(len=80) function spring_name(location) result(name)
+      type(spring_location), intent(in) :: location
       character(len=9), parameter :: kinds(4) = ['shear    ', 'flexural ', 'axial    ', 'layer    ']
       character(len=12) :: joint
 
-      write (joint, '(i0)') place%joint
-      name = 'the '//trim(kinds(place%kind))//' spring of joint '//joint
-      if (place%owner == '') return
-      if (place%joint == 0) then
-         name = 'the '//trim(kinds(place%kind))//' spring from the ground to '//place%owner
-      else if (place%member == 0) then
-         name = 'the spring of the panel of node '//place%owner
-      else if (place%kind == layer) then
-         name = 'a layer of joint '//trim(joint)//' of member '//place%owner
+      write (joint, '(i0)') location%joint
+      name = 'the '//trim(kinds(location%kind))//' spring of joint '//joint
+      if (location%owner == '') return
+      if (location%joint == 0) then
+         name = 'the '//trim(kinds(location%kind))//' spring from the ground to '//location%owner
+      else if (location%member == 0) then
+         name = 'the spring of the panel of node '//location%owner
+      else if (location%kind == layer) then
+         name = 'a layer of joint '//trim(joint)//' of member '//location%owner
       else
-         name = 'the '//trim(kinds(place%kind))//' spring '//trim(joint)//' of member '//place%owner
+         name = 'the '//trim(kinds(location%kind))//' spring '//trim(joint)//' of member '//location%owner
       end if
    end function spring_name
 
-end module rbs_structure_spring_place
+end module rbs_structure_spring_location
