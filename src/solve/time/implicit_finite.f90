@@ -61,7 +61,7 @@ module rbs_solve_time_implicit_finite
       real(wp), allocatable, private :: f(:), k(:), viscous(:)
       !> Of joints that do not open: how far they have opened, axial forces, tension positive, and these at
       !> the start of the step (n)
-      real(wp), allocatable, private :: gap(:), reaction(:), reaction0(:)
+      real(wp), allocatable, private :: opening(:), reaction(:), reaction0(:)
       !> Derivative of the moment on the top body by its rotation; largest force, moment of the present trial
       !> and of all steps so far
       real(wp), private :: load_rate = 0.0_wp, scale(2) = 0.0_wp, largest(2) = 0.0_wp
@@ -103,7 +103,7 @@ contains
       allocate (self%mass(3, n), self%r(3, n), self%dx(3, n), source=0.0_wp)
       allocate (self%moved(3, 0:n), self%v0(3, 0:n), self%g0(3, 0:n), self%a0(3, 0:n), source=0.0_wp)
       allocate (self%v1(3, 0:n), self%g1(3, 0:n), self%a1(3, 0:n), source=0.0_wp)
-      allocate (self%from(n), self%rotation(n), self%gap(n), self%reaction(n), self%reaction0(n), &
+      allocate (self%from(n), self%rotation(n), self%opening(n), self%reaction(n), self%reaction0(n), &
                 self%dn(n), source=0.0_wp)
       allocate (self%q1(m), self%change(m), self%w1(m), self%f(m), self%k(m), self%viscous(m), &
                 self%work(m), source=0.0_wp)
@@ -242,7 +242,7 @@ contains
                                  self%joint(i), change)
             end associate
             call put_joint(self, change, i, self%change)
-            self%gap(i) = change(tension)
+            self%opening(i) = change(tension)
          end do
       end subroutine find_changes
 
@@ -272,7 +272,7 @@ contains
          self%residual = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), least_scale), &
                              maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), least_scale))
          if (self%column%opens) return
-         self%residual = max(self%residual, maxval(abs(self%gap))/maxval(self%column%length))
+         self%residual = max(self%residual, maxval(abs(self%opening))/maxval(self%column%length))
       end subroutine find_residual
 
       !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
@@ -449,7 +449,7 @@ contains
                self%band(main, l) = self%band(main, l) + of_mass*self%mass(j, i)
                self%right(l, 1) = self%r(j, i)
             end do
-            if (.not. self%column%opens) self%right(l - 3, 1) = -per_force*self%gap(i)
+            if (.not. self%column%opens) self%right(l - 3, 1) = -per_force*self%opening(i)
          end do
          self%band(main, last) = self%band(main, last) - share*self%load_rate
       end associate

@@ -263,22 +263,22 @@ contains
 
    !> Forces of the ends that are in equilibrium with forces of the springs, and the corrections of their
    !> deformations that this needs.
-   pure subroutine find_forces(e, m, n, stiffness, rate, bent, opened, gap, f, dead, dead_force, s, &
+   pure subroutine find_forces(e, m, n, stiffness, rate, bent, opened, misfit, f, dead, dead_force, s, &
                                correction)
       type(frame_element), intent(in) :: e
       !> Numbers of springs that bend, and that open
       integer, intent(in) :: m, n
       !> Of `find_tangent`
       real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> Compatibility error: motion of the ends less the deformations; forces of the springs, the share of
+      !> Compatibility error, the misfit: motion of the ends less the deformations; forces of the springs, the share of
       !> the dead load that acts, and its forces in them
-      real(wp), intent(in) :: gap(3), f(m + n), dead, dead_force(m + n)
+      real(wp), intent(in) :: misfit(3), f(m + n), dead, dead_force(m + n)
       real(wp), intent(out) :: s(3), correction(m + n)
       real(wp) :: force, left(3)
       integer :: i, j
 
       s = forces_inside(m + n, rate, f, dead, dead_force)
-      left = gap - motion_of_rest(e, s)
+      left = misfit - motion_of_rest(e, s)
       do j = 1, m + n
          correction(j) = rate(1, j)*left(1) + rate(2, j)*left(2) + rate(3, j)*left(3)
       end do
@@ -294,17 +294,17 @@ contains
             correction(m + i) = correction(m + i) - opened(i, j)*force
          end do
       end do
-      s = s + forces_of(stiffness, gap)
+      s = s + forces_of(stiffness, misfit)
    end subroutine find_forces
 
    !> Forces of the ends alone.
-   pure function end_forces(m, stiffness, rate, gap, f, dead_force) result(s)
+   pure function end_forces(m, stiffness, rate, misfit, f, dead_force) result(s)
       !> See `find_forces`, under all of the dead load
       integer, intent(in) :: m
-      real(wp), intent(in) :: stiffness(3, 3), rate(3, m), gap(3), f(m), dead_force(m)
+      real(wp), intent(in) :: stiffness(3, 3), rate(3, m), misfit(3), f(m), dead_force(m)
       real(wp) :: s(3)
 
-      s = forces_inside(m, rate, f, 1.0_wp, dead_force) + forces_of(stiffness, gap)
+      s = forces_inside(m, rate, f, 1.0_wp, dead_force) + forces_of(stiffness, misfit)
    end function end_forces
 
    !> Forces of the ends that forces of springs without the dead load make where the ends are held.
@@ -320,11 +320,11 @@ contains
       end do
    end function forces_inside
 
-   pure function forces_of(stiffness, gap) result(s)
-      real(wp), intent(in) :: stiffness(3, 3), gap(3)
+   pure function forces_of(stiffness, misfit) result(s)
+      real(wp), intent(in) :: stiffness(3, 3), misfit(3)
       real(wp) :: s(3)
 
-      s = stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3)
+      s = stiffness(:, 1)*misfit(1) + stiffness(:, 2)*misfit(2) + stiffness(:, 3)*misfit(3)
    end function forces_of
 
    !> Motion of the ends that forces of the ends make in the elastic rest.

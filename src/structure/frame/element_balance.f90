@@ -70,26 +70,26 @@ contains
 
    !> Motion of the ends of an element less that which its springs and its dead load make: the part that its
    !> elastic rest has to follow.
-   pure function compatibility_error(e, q, d, dead) result(gap)
+   pure function compatibility_error(e, q, d, dead) result(misfit)
       type(frame_element), intent(in) :: e
       !> Motion of the ends; deformations of all springs; share of the dead load that acts
       real(wp), intent(in) :: q(3), dead
       real(wp), intent(in), contiguous :: d(:)
-      real(wp) :: gap(3)
+      real(wp) :: misfit(3)
       integer :: j
 
-      gap = q
-      gap(2:) = gap(2:) - dead*e%dead_rotation
+      misfit = q
+      misfit(2:) = misfit(2:) - dead*e%dead_rotation
       if (e%layered) then
-         call take_joints_off(size(e%motion), e%motion, e%is_single, e%arm, d, gap)
+         call take_joints_off(size(e%motion), e%motion, e%is_single, e%arm, d, misfit)
          return
       end if
       do j = 1, e%bending
-         gap(2) = gap(2) - e%share(1, j)*d(e%before + j)
-         gap(3) = gap(3) - e%share(2, j)*d(e%before + j)
+         misfit(2) = misfit(2) - e%share(1, j)*d(e%before + j)
+         misfit(3) = misfit(3) - e%share(2, j)*d(e%before + j)
       end do
       do j = e%bending + 1, e%bending + e%opening
-         gap(1) = gap(1) - d(e%before + j)
+         misfit(1) = misfit(1) - d(e%before + j)
       end do
    end function compatibility_error
 
@@ -140,12 +140,12 @@ contains
 
    !> Forces of the ends of an element in equilibrium with its springs, and the corrections of their
    !> deformations that this needs.
-   pure subroutine balance_ends(e, springs, numbers, gap, dead, dead_force, f, tangent, s, correction)
+   pure subroutine balance_ends(e, springs, numbers, misfit, dead, dead_force, f, tangent, s, correction)
       type(frame_element), intent(in) :: e
       !> Numbers of springs in the frame, and of numbers in all tangents
       integer, intent(in) :: springs, numbers
       !> Of `compatibility_error`; share of the dead load that acts; forces that all of it makes in springs
-      real(wp), intent(in) :: gap(3), dead, dead_force(springs)
+      real(wp), intent(in) :: misfit(3), dead, dead_force(springs)
       !> Forces of all springs
       real(wp), intent(in) :: f(springs), tangent(numbers)
       real(wp), intent(out) :: s(3)
@@ -156,10 +156,10 @@ contains
          if (e%layered) then
             call layered_forces(e, size(e%motion), m + n, size(correction), e%first, e%motion, e%is_single, &
                                 e%arm, e%dead_moment, tangent(layout%stiffness:), tangent(layout%rate:), &
-                                gap, f(first:), dead, dead_force(first:), s, correction)
+                                misfit, f(first:), dead, dead_force(first:), s, correction)
          else
             call find_forces(e, m, n, tangent(layout%stiffness:), tangent(layout%rate:), &
-                             tangent(layout%bent:), tangent(layout%opened:), gap, f(first:), dead, &
+                             tangent(layout%bent:), tangent(layout%opened:), misfit, f(first:), dead, &
                              dead_force(first:), s, correction(first:))
          end if
       end associate
@@ -292,14 +292,14 @@ contains
    end subroutine clear_round_off
 
    !> Energy of the elastic rest of an element [J].
-   pure real(wp) function energy_of_rest(e, gap) result(energy)
+   pure real(wp) function energy_of_rest(e, misfit) result(energy)
       type(frame_element), intent(in) :: e
       !> Its elongation and rotations
-      real(wp), intent(in) :: gap(3)
+      real(wp), intent(in) :: misfit(3)
 
-      energy = 0.5_wp*e%rest_along*gap(1)**2
-      if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(gap(2) + gap(3))**2 &
-                                                         + e%rest(2)*(gap(2) - gap(3))**2)
+      energy = 0.5_wp*e%rest_along*misfit(1)**2
+      if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(misfit(2) + misfit(3))**2 &
+                                                         + e%rest(2)*(misfit(2) - misfit(3))**2)
    end function energy_of_rest
 
 end module rbs_structure_frame_element_balance

@@ -383,7 +383,7 @@ contains
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
       real(wp), intent(in), optional :: dead
-      real(wp) :: gap(3), s(3), part
+      real(wp) :: misfit(3), s(3), part
       integer :: i
 
       part = 1.0_wp
@@ -393,8 +393,8 @@ contains
          g(self%ground) = g(self%ground) - f(self%member_springs + 1:)
          do i = 1, size(self%element)
             associate (e => self%element(i))
-               gap = compatibility_error(e, end_motion(e, x), d, part)
-               call balance_ends(e, size(f), size(tangent), gap, part, self%dead_force, f, tangent, s, &
+               misfit = compatibility_error(e, end_motion(e, x), d, part)
+               call balance_ends(e, size(f), size(tangent), misfit, part, self%dead_force, f, tangent, s, &
                                  correction)
                call add_end_forces(e, -s, g)
                if (self%axially_loaded .and. .not. e%is_panel) call add_second_order(e, x, g)
@@ -410,20 +410,20 @@ contains
       !> Deformations and forces of all springs (springs)
       real(wp), intent(in), contiguous :: d(:), f(:)
       real(wp), intent(out) :: s(3)
-      real(wp) :: gap(3)
+      real(wp) :: misfit(3)
 
       associate (e => self%element(member), x => d(self%springs + 1:), tangent => self%initial_tangent)
-         gap = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
+         misfit = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
          if (e%layered) then
             block
                real(wp) :: correction(size(d))
 
-               call balance_ends(e, size(f), size(tangent), gap, 1.0_wp, self%dead_force, f, tangent, s, &
+               call balance_ends(e, size(f), size(tangent), misfit, 1.0_wp, self%dead_force, f, tangent, s, &
                                  correction)
             end block
          else
             s = end_forces(e%bending + e%opening, tangent(e%layout%stiffness:), tangent(e%layout%rate:), &
-                           gap, f(e%before + 1:), self%dead_force(e%before + 1:))
+                           misfit, f(e%before + 1:), self%dead_force(e%before + 1:))
          end if
       end associate
    end subroutine member_forces

@@ -46,7 +46,7 @@ contains
    end procedure compress
 
    module procedure work_of_dead_load
-      real(wp) :: gap(3), turned(2)
+      real(wp) :: misfit(3), turned(2)
       integer :: i
 
       associate (x => d(self%springs + 1:self%joints%before))
@@ -54,10 +54,10 @@ contains
          do i = 1, size(self%element)
             associate (e => self%element(i))
                if (.not. allocated(e%rest)) cycle
-               gap = compatibility_error(e, end_motion(e, x), d, 0.0_wp)
+               misfit = compatibility_error(e, end_motion(e, x), d, 0.0_wp)
                turned = e%dead_rotation
-               work = work + 0.25_wp*(e%rest(1)*sum(turned)*sum(gap(2:)) &
-                                    + e%rest(2)*(turned(1) - turned(2))*(gap(2) - gap(3)))
+               work = work + 0.25_wp*(e%rest(1)*sum(turned)*sum(misfit(2:)) &
+                                    + e%rest(2)*(turned(1) - turned(2))*(misfit(2) - misfit(3)))
             end associate
          end do
       end associate

@@ -117,7 +117,7 @@ contains
 
    !> As `find_forces`. Of a joint of layers axial force and moment are in the places of its first two.
    pure subroutine layered_forces(e, n, m, coordinates, slot, motion, is_single, arm, dead_moment, &
-                                  stiffness, soft, gap, f, dead, dead_force, s, correction)
+                                  stiffness, soft, misfit, f, dead, dead_force, s, correction)
       type(frame_element), intent(in) :: e
       !> Numbers of its joints and springs, and of coordinates
       integer, intent(in) :: n, m, coordinates
@@ -127,9 +127,9 @@ contains
       real(wp), intent(in) :: arm(3, 2, n), dead_moment(n)
       !> Of `layered_tangent`
       real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, n)
-      !> Compatibility error: motion of the ends less that of the joints; forces of the springs; the share of
+      !> Compatibility error, the misfit: motion of the ends less that of the joints; forces of the springs; the share of
       !> the dead load that acts, and its forces in them
-      real(wp), intent(in) :: gap(3), f(m), dead, dead_force(m)
+      real(wp), intent(in) :: misfit(3), f(m), dead, dead_force(m)
       real(wp), intent(out) :: s(3)
       real(wp), intent(inout) :: correction(coordinates)
       real(wp) :: all(3), more(3)
@@ -149,8 +149,8 @@ contains
          end associate
       end do
       s = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
-      ! In joints all but without stiffness these forces make motions beside which the gap is round-off.
-      all = gap - motion_of_rest(e, s)
+      ! In joints all but without stiffness these forces make motions beside which the misfit is round-off.
+      all = misfit - motion_of_rest(e, s)
       do j = 1, n
          associate (at => motion(j), a => arm(:, 1, j), b => soft(4:, j))
             correction(at) = unbalance(correction(at), a(1)*s(1), a(2)*s(2), a(3)*s(3))
@@ -180,18 +180,18 @@ contains
    end function work_on
 
    !> Take the motions of the ends that the joints make from those that there are.
-   pure subroutine take_joints_off(n, motion, is_single, arm, d, gap)
+   pure subroutine take_joints_off(n, motion, is_single, arm, d, misfit)
       integer, intent(in) :: n, motion(n)
       logical, intent(in) :: is_single(n)
       real(wp), intent(in) :: arm(3, 2, n)
       !> (coordinates)
       real(wp), intent(in), contiguous :: d(:)
-      real(wp), intent(inout) :: gap(3)
+      real(wp), intent(inout) :: misfit(3)
       integer :: j
 
       do j = 1, n
-         gap = gap - arm(:, 1, j)*d(motion(j))
-         if (.not. is_single(j)) gap = gap - arm(:, 2, j)*d(motion(j) + 1)
+         misfit = misfit - arm(:, 1, j)*d(motion(j))
+         if (.not. is_single(j)) misfit = misfit - arm(:, 2, j)*d(motion(j) + 1)
       end do
    end subroutine take_joints_off
 
