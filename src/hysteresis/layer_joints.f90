@@ -27,9 +27,9 @@ module rbs_hysteresis_layer_joints
       !> Sums over the layers of a joint on their present lines: of k, k y and k y**2, axial force and moment
       !> at the anchor, the motion at which they were found (5, joints), (2, joints)
       real(wp), allocatable :: sums(:, :), anchor(:, :)
-      !> Motion at which all layers were on their lines, and the least way of any from there to an end of its
+      !> Motion at which all layers were on their lines, and the least distance of any to an end of its
       !> line (2, joints), (joints); none is known where it is negative
-      real(wp), allocatable :: seen(:, :), room(:)
+      real(wp), allocatable :: seen(:, :), clearance(:)
       !> Whether layers have changed their lines since the sums were found (joints)
       logical, allocatable :: is_changed(:)
    contains
@@ -65,7 +65,7 @@ contains
       self%reach = [(maxval(abs(y), mask=of == j), j=1, self%count)]
       allocate (self%sums(5, self%count), self%anchor(2, self%count), self%seen(2, self%count), &
                 source=0.0_wp)
-      allocate (self%room(self%count), source=-1.0_wp)
+      allocate (self%clearance(self%count), source=-1.0_wp)
       allocate (self%is_changed(self%count), source=.true.)
    end subroutine create
 
@@ -158,7 +158,7 @@ contains
          call add_up(last - i + 1, self%y(i:last), self%anchor(:, joint), d0(i:last), f0(i:last), k(i:last), &
                      self%sums(:, joint))
       end associate
-      self%room(joint) = -1.0_wp
+      self%clearance(joint) = -1.0_wp
       self%is_changed(joint) = .false.
    end subroutine sum_up
 
@@ -208,46 +208,47 @@ contains
       real(wp), intent(in), contiguous :: lower(:), upper(:)
       integer, intent(in), contiguous :: one_way(:)
       logical, intent(out) :: stay
-      real(wp) :: z(2), room
+      real(wp) :: z(2), clearance
       integer :: j
 
       stay = .true.
       do j = 1, self%count
          associate (i => self%first(j), n => self%last(j), at => self%before + 2*j)
-            if (has_room(d(at - 1:at), self%seen(:, j), self%reach(j), self%room(j))) cycle
+            if (is_within_clearance(d(at - 1:at), self%seen(:, j), self%reach(j), self%clearance(j))) cycle
             z = d(at - 1:at)
-            call find_room(n - i + 1, self%y(i:n), z, lower(i:n), upper(i:n), room)
-            stay = room >= 0.0_wp .and. maxval(abs(z)) < out_of_bounds
+            call find_clearance(n - i + 1, self%y(i:n), z, lower(i:n), upper(i:n), clearance)
+            stay = clearance >= 0.0_wp .and. maxval(abs(z)) < out_of_bounds
             if (.not. stay) return
             self%seen(:, j) = z
-            self%room(j) = min(room, out_of_bounds) - round_off*(abs(z(1)) + self%reach(j)*abs(z(2)))
+            self%clearance(j) = min(clearance, out_of_bounds) &
+                                - round_off*(abs(z(1)) + self%reach(j)*abs(z(2)))
             ! The rear end of a line that is left when the motion turns moves with the layer.
-            if (any(one_way(i:n) /= 0)) self%room(j) = -1.0_wp
+            if (any(one_way(i:n) /= 0)) self%clearance(j) = -1.0_wp
          end associate
       end do
    end subroutine stay_on_lines
 
-   !> Whether the way from one motion of a joint to another is less than its room.
-   pure logical function has_room(z, seen, reach, room)
-      real(wp), intent(in) :: z(2), seen(2), reach, room
+   !> Whether the distance from one motion of a joint to another is less than its clearance.
+   pure logical function is_within_clearance(z, seen, reach, clearance)
+      real(wp), intent(in) :: z(2), seen(2), reach, clearance
 
-      has_room = abs(z(1) - seen(1)) + reach*abs(z(2) - seen(2)) < room
-   end function has_room
+      is_within_clearance = abs(z(1) - seen(1)) + reach*abs(z(2) - seen(2)) < clearance
+   end function is_within_clearance
 
-   !> Least way of any layer from a motion of the joint to an end of its line, negative beyond it.
-   pure subroutine find_room(n, y, z, lower, upper, room)
+   !> Least distance of any layer from a motion of the joint to an end of its line, negative beyond it.
+   pure subroutine find_clearance(n, y, z, lower, upper, clearance)
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), z(2), lower(n), upper(n)
-      real(wp), intent(out) :: room
+      real(wp), intent(out) :: clearance
       real(wp) :: d
       integer :: i
 
-      room = huge(1.0_wp)
-      !$omp simd reduction(min:room) private(d)
+      clearance = huge(1.0_wp)
+      !$omp simd reduction(min:clearance) private(d)
       do i = 1, n
          d = z(1) + y(i)*z(2)
-         room = min(room, upper(i) - d, d - lower(i))
+         clearance = min(clearance, upper(i) - d, d - lower(i))
       end do
-   end subroutine find_room
+   end subroutine find_clearance
 
 end module rbs_hysteresis_layer_joints

@@ -79,7 +79,7 @@ module rbs_solve_ensemble_lane_arrays
       !> reached for the first time
       real(wp), dimension(lanes, 2) :: q = 0.0_wp, v = 0.0_wp, from = 0.0_wp, lowest = -huge(1.0_wp), &
                                        highest = huge(1.0_wp)
-      !> Lines of the springs, as in `spring_array`; the way is +1 or -1 for those that unload on reversal
+      !> Lines of the springs, as in `spring_array`; direction +1 or -1 where they unload on reversal
       real(wp), dimension(lanes, 2) :: d0 = 0.0_wp, f0 = 0.0_wp, k = 0.0_wp, lower = 0.0_wp, upper = 0.0_wp, &
                                        direction = 0.0_wp, work = 0.0_wp
       !> Of implicit methods: velocities, accelerations and forces of the bodies at the start, the largest

@@ -45,9 +45,9 @@ module rbs_solve_ensemble_simd_batch
    type :: batch_type
       type(kernel_type) :: kernel
       type(lane_method) :: method
-      !> The lanes, in a room that begins where a line of the cache does: an access to several lanes that
+      !> The lanes, in storage that begins where a line of the cache does: an access to several lanes that
       !> crosses the border of two lines takes twice the time
-      real(wp), allocatable :: room(:)
+      real(wp), allocatable :: storage(:)
       type(lane_clock), pointer :: x => null()
       type(body_arrays), pointer :: y => null()
       !> Steps on which springs leave their lines
@@ -161,11 +161,11 @@ contains
       batch%kernel = chosen_kernel(level)
       clock = line*ceiling(storage_size(batch%x)/real(line*storage_size(1.0_wp), wp))
       bodies = storage_size(batch%y)/storage_size(1.0_wp)
-      allocate (batch%room(line + clock + bodies), batch%lane(lanes))
-      address = transfer(c_loc(batch%room), address)/(storage_size(1.0_wp)/8)
+      allocate (batch%storage(line + clock + bodies), batch%lane(lanes))
+      address = transfer(c_loc(batch%storage), address)/(storage_size(1.0_wp)/8)
       first = int(modulo(-address, int(line, c_intptr_t))) + 1
-      call c_f_pointer(c_loc(batch%room(first)), batch%x)
-      call c_f_pointer(c_loc(batch%room(first + clock)), batch%y)
+      call c_f_pointer(c_loc(batch%storage(first)), batch%x)
+      call c_f_pointer(c_loc(batch%storage(first + clock)), batch%y)
       batch%x = lane_clock(damped=damped)
       batch%y = body_arrays()
       at = 0
