@@ -380,15 +380,15 @@ contains
       real(wp), intent(in) :: f
       !> Whether the spring can reach it
       logical, intent(out) :: found
-      real(wp) :: way, far
+      real(wp) :: rise, far
       integer :: lines, direction
       logical :: is_there
 
       found = .true.
       do lines = 1, most_lines
-         way = f - self%force(i)
-         if (.not. abs(way) > 0.0_wp) return
-         direction = merge(1, -1, way > 0.0_wp)
+         rise = f - self%force(i)
+         if (.not. abs(rise) > 0.0_wp) return
+         direction = merge(1, -1, rise > 0.0_wp)
          if (self%unload_on_reversal(i) /= -direction) then
             associate (d0 => self%d0(i), f0 => self%f0(i), k => self%k(i))
                far = self%end_toward(i, direction)

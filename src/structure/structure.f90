@@ -142,7 +142,7 @@ module rbs_structure_structure
       procedure :: speed
       procedure :: power_of_loads => power_of_patterns
       procedure :: kinetic_energy
-      procedure :: largest_turn
+      procedure :: largest_rotation
       procedure :: storey_drifts
       procedure :: largest_drift
       procedure :: top_displacement
@@ -411,14 +411,14 @@ contains
    end function kinetic_energy
 
    !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
-   pure real(wp) function largest_turn(self, d) result(largest)
+   pure real(wp) function largest_rotation(self, d) result(largest)
       class(structure_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: rotation(self%n)
 
       call self%rotations(d, rotation)
       largest = maxval(abs(rotation))
-   end function largest_turn
+   end function largest_rotation
 
    !> Displacement of the top along x [m].
    pure real(wp) function top_displacement(self, d) result(x)

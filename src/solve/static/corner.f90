@@ -1,6 +1,6 @@
 !> The lines on which a structure leaves a corner of its static path.
 !>
-!> At a corner a spring is at an end of its line, or on a one-way line against its way. Which springs
+!> At a corner a spring is at an end of its line, or on a one-way line against its direction. Which springs
 !> continue and which turn back must be found together: a linear complementarity problem.
 module rbs_solve_static_corner
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
@@ -54,7 +54,7 @@ contains
       marked = .false.
       may_pass = path%may_go_back
       if (may_pass) may_pass = any(path%arrived /= 0)
-      if (may_pass) path%way_in = path%rate
+      if (may_pass) path%rate_in = path%rate
       found = path%goes_back
       if (found) then
          call pass()
@@ -163,7 +163,7 @@ contains
                           'slowly, or a response in time, goes on')
       end subroutine report_snap_back
 
-      !> Springs without room on their lines for the present rates, and joints without room on their planes.
+      !> Springs that are blocked on their lines for the present rates, and joints on their planes.
       subroutine find_stopped()
          call find_blocked(path%springs, path%rate(:path%moving), blocked, springs_blocked)
          stopped = springs_blocked
@@ -247,8 +247,8 @@ contains
       !> Direction of the target; the mark of the springs is the corner
       integer, intent(in) :: toward
       logical, intent(out) :: found
-      !> Virtual ways of the springs, gaps, where they have changed their lines, stiffness of the line after
-      !> the corner
+      !> Virtual motions of the springs, gaps, where they have changed their lines, stiffness of the line
+      !> after the corner
       real(wp), dimension(path%moving) :: v, gap, edge, k
       !> Whether a spring is virtually back on the line on which it came to the corner
       logical :: is_back(path%moving)
@@ -262,7 +262,7 @@ contains
       do trial = 1, 2*most_gaps
          ends = merge(1, -1, modulo(trial, 2) == 1)
          gap = [(1.0_wp + modulo(i*((trial + 1)/2)*golden, 1.0_wp), i=1, m)]
-         gap = gap*max(abs(path%way_in(:m)), at_rest**(1.0_wp/((trial + 1)/2))*maxval(abs(path%way_in(:m))))
+         gap = gap*max(abs(path%rate_in(:m)), at_rest**(1.0_wp/((trial + 1)/2))*maxval(abs(path%rate_in(:m))))
          v = 0.0_wp
          is_back = .false.
          ! Springs that have come to their ends at once did so one after the other.
@@ -304,10 +304,10 @@ contains
       subroutine find_next()
          real(wp) :: at, clearance, least, next_at
          logical :: is_blocked(m)
-         integer :: blocked(m), count, next_way
+         integer :: blocked(m), count, next_heading
 
          next = 0
-         next_way = 0
+         next_heading = 0
          next_at = 0.0_wp
          least = huge(1.0_wp)
          call find_blocked(path%springs, path%rate(:m), blocked, count)
@@ -329,14 +329,14 @@ contains
             if (.not. clearance < least) cycle
             least = clearance
             next = i
-            next_way = heading
+            next_heading = heading
             next_at = at
          end do
          if (next == 0) return
          v = v + least*path%rate(:m)
-         call change(next, next_way, next_at)
+         call change(next, next_heading, next_at)
          spring = next
-         goes = next_way
+         goes = next_heading
       end subroutine find_next
 
       !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line moves back
@@ -373,13 +373,13 @@ contains
    end subroutine follow_through
 
    !> Put a spring on the line that follows; a line without length, as layers have that unload at once after
-   !> they were loaded again, is left on the way on which it is met.
-   subroutine leave(springs, i, way)
+   !> they were loaded again, is left in the direction in which it is met.
+   subroutine leave(springs, i, side)
       type(spring_array), intent(inout) :: springs
-      integer, intent(in) :: i, way
+      integer, intent(in) :: i, side
 
-      call springs%leave(i, way)
-      if (springs%upper(i) - springs%lower(i) <= on_the_end*abs(springs%d(i))) call springs%leave(i, way)
+      call springs%leave(i, side)
+      if (springs%upper(i) - springs%lower(i) <= on_the_end*abs(springs%d(i))) call springs%leave(i, side)
    end subroutine leave
 
    !> Whether a spring is on an end that belongs to its line.
@@ -412,7 +412,7 @@ contains
    pure logical function goes_on(path)
       class(static_path), intent(in) :: path
 
-      goes_on = any(path%rate(:path%moving)*path%way_in(:path%moving) > 0.0_wp)
+      goes_on = any(path%rate(:path%moving)*path%rate_in(:path%moving) > 0.0_wp)
    end function goes_on
 
    !> Whether a structure whose displacement is driven has no strength left.

@@ -11,10 +11,10 @@ module rbs_solve_static_curve
    implicit none
    private
 
-   public :: curve_type, clean, most_turn, same_rate
+   public :: curve_type, clean, most_rotation, same_rate
 
    !> Largest rotation in one stride [rad], and how far it may be from its tangent as a share of it.
-   real(wp), parameter :: most_turn = 0.05_wp, most_bend = 0.1_wp
+   real(wp), parameter :: most_rotation = 0.05_wp, most_bend = 0.1_wp
 
    !> Bends this small are round-off [rad].
    real(wp), parameter :: round_off = 1.0e-12_wp
@@ -23,13 +23,13 @@ module rbs_solve_static_curve
    !> their own size is zero.
    real(wp), parameter :: noise = 1.0e-13_wp, same_rate = 1.0e-8_wp
 
-   !> The least motion of the top [m] over the way between two targets where the axial load varies.
+   !> The least motion of the top [m] between two targets where the axial load varies.
    real(wp), parameter :: least_motion = 1.0e-4_wp
 
    !> A spring that moves back by less than this share of its deformation has not turned; one that is beyond
-   !> its end by less than the second share of its way is not beyond it, nor a layer by less than the third of
-   !> the largest deformation of a layer.
-   real(wp), parameter :: no_way = 1.0e-10_wp, no_overshoot = 1.0e-9_wp, layer_digits = 1.0e-13_wp
+   !> its end by less than the second share of its motion is not beyond it, nor a layer by less than the third
+   !> of the largest deformation of a layer.
+   real(wp), parameter :: no_motion = 1.0e-10_wp, no_overshoot = 1.0e-9_wp, layer_digits = 1.0e-13_wp
 
    type :: curve_type
       !> Change of the parameter from end to end
@@ -39,7 +39,7 @@ module rbs_solve_static_curve
       type(line_list) :: lines
       !> Rates that still count for slips and openings, and for rotations; lines of flexural springs (lines)
       real(wp), private :: least(2) = 0.0_wp
-      logical, allocatable, private :: turns(:)
+      logical, allocatable, private :: is_rotation(:)
       !> Round-off of the deformations of layers [m]
       real(wp), private :: digits = 0.0_wp
    contains
@@ -58,9 +58,9 @@ contains
       class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: near, far
 
-      if (.not. allocated(self%turns)) then
-         allocate (self%turns(size(near%d)), source=.false.)
-         self%turns(:size(near%q)) = structure%location%kind == flexure
+      if (.not. allocated(self%is_rotation)) then
+         allocate (self%is_rotation(size(near%d)), source=.false.)
+         self%is_rotation(:size(near%q)) = structure%location%kind == flexure
       end if
       self%length = far%t - near%t
       self%near = near
@@ -103,38 +103,38 @@ contains
    pure logical function is_gentle(self, structure)
       class(curve_type), intent(in) :: self
       class(structure_type), intent(in) :: structure
-      real(wp) :: change(size(self%near%q)), turn, step
+      real(wp) :: change(size(self%near%q)), rotation, step
 
       associate (slips => structure%location%kind == shear, height => structure%total_height)
          change = self%far%q - self%near%q
-         turn = structure%largest_turn(change)
-         step = max(turn, maxval(abs(change), mask=slips)/height)
+         rotation = structure%largest_rotation(change)
+         step = max(rotation, maxval(abs(change), mask=slips)/height)
          change = change - self%length*self%near%rate
-         is_gentle = turn <= 2.0_wp*most_turn .and. &
-                     max(structure%largest_turn(change), maxval(abs(change), mask=slips)/height) &
+         is_gentle = rotation <= 2.0_wp*most_rotation .and. &
+                     max(structure%largest_rotation(change), maxval(abs(change), mask=slips)/height) &
                      <= most_bend*step + round_off
       end associate
    end function is_gentle
 
-   !> Work of a force on a way: the trapezoidal rule, and its correction by the slopes at the ends [J]. The
-   !> correction is exact if both are cubics of the parameter, or one a cubic of the other: the smallest is
-   !> that of the straightest curve.
-   pure function work(self, force, way, force_rate, way_rate)
+   !> Work of a force on a displacement: the trapezoidal rule, and its correction by the slopes at the ends
+   !> [J]. The correction is exact if both are cubics of the parameter, or one a cubic of the other: the
+   !> smallest is that of the straightest curve.
+   pure function work(self, force, displacement, force_rate, displacement_rate)
       class(curve_type), intent(in) :: self
       !> At both ends
-      real(wp), intent(in) :: force(2), way(2), force_rate(2), way_rate(2)
-      real(wp) :: work(2), bend_of(3)
+      real(wp), intent(in) :: force(2), displacement(2), force_rate(2), displacement_rate(2)
+      real(wp) :: work(2), correction(3)
 
-      associate (rise => force(2) - force(1), step => way(2) - way(1), bend => self%length*force_rate, &
-                 turn => self%length*way_rate)
+      associate (rise => force(2) - force(1), step => displacement(2) - displacement(1), &
+                 force_slope => self%length*force_rate, slope => self%length*displacement_rate)
          work(1) = 0.5_wp*(force(1) + force(2))*step
-         bend_of = ((bend(1) - bend(2))*step - rise*(turn(1) - turn(2)))/10.0_wp &
-                   + (bend(2)*turn(1) - bend(1)*turn(2))/60.0_wp
-         if (product(bend)*product(turn) > 0.0_wp) then
-            bend_of(2) = step**2*(bend(1)/turn(1) - bend(2)/turn(2))/12.0_wp
-            bend_of(3) = -rise**2*(turn(1)/bend(1) - turn(2)/bend(2))/12.0_wp
+         correction = ((force_slope(1) - force_slope(2))*step - rise*(slope(1) - slope(2)))/10.0_wp &
+                   + (force_slope(2)*slope(1) - force_slope(1)*slope(2))/60.0_wp
+         if (product(force_slope)*product(slope) > 0.0_wp) then
+            correction(2) = step**2*(force_slope(1)/slope(1) - force_slope(2)/slope(2))/12.0_wp
+            correction(3) = -rise**2*(slope(1)/force_slope(1) - slope(2)/force_slope(2))/12.0_wp
          end if
-         work(2) = bend_of(minloc(abs(bend_of), dim=1))
+         work(2) = correction(minloc(abs(correction), dim=1))
       end associate
    end function work
 
@@ -144,16 +144,16 @@ contains
    pure real(wp) function least_rate(self, point) result(least)
       class(curve_type), intent(in) :: self
       type(path_point), intent(in) :: point
-      real(wp) :: largest, way
+      real(wp) :: largest, sense
       integer :: i
 
       least = 1.0_wp
-      way = sign(1.0_wp, self%length)
-      do i = 1, size(self%turns)
+      sense = sign(1.0_wp, self%length)
+      do i = 1, size(self%is_rotation)
          if (self%lines%one_way(i) == 0) cycle
          largest = max(abs(self%near%v(i)), abs(self%far%v(i)), &
-                       self%least(merge(2, 1, self%turns(i)))/same_rate)
-         if (largest > 0.0_wp) least = min(least, self%lines%one_way(i)*way*point%v(i)/largest + same_rate)
+                       self%least(merge(2, 1, self%is_rotation(i)))/same_rate)
+         if (largest > 0.0_wp) least = min(least, self%lines%one_way(i)*sense*point%v(i)/largest + same_rate)
       end do
    end function least_rate
 
@@ -166,7 +166,7 @@ contains
       hides = .false.
       ! Round-off of a column at rest.
       if (maxval(abs(self%far%q - self%near%q)) <= noise*least_motion) return
-      do i = 1, size(self%turns)
+      do i = 1, size(self%is_rotation)
          associate (one_way => self%lines%one_way(i))
             if (one_way /= 0) hides = hides_turn(self, i, one_way)
             if (one_way >= 0 .and. .not. hides) hides = passes(self, i, 1, self%lines%upper(i))
@@ -204,10 +204,10 @@ contains
       c = cubic_of(self, i)
       share = turns_of(c)
       turn = cubic_at(share, c(1), c(2), c(3), c(4))
-      hides_turn = share(2) < 1.0_wp .and. one_way*(turn(1) - turn(2)) > no_way*max(abs(c(1)), abs(c(2)))
+      hides_turn = share(2) < 1.0_wp .and. one_way*(turn(1) - turn(2)) > no_motion*max(abs(c(1)), abs(c(2)))
    end function hides_turn
 
-   !> Deformation of a spring at both ends, and its slopes there by the share of the way.
+   !> Deformation of a spring at both ends, and its slopes there by the share of the parameter.
    pure function cubic_of(self, i) result(c)
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i

@@ -16,7 +16,7 @@ module rbs_solve_static_curved
    use rbs_hysteresis_interaction_joints, only: list_lines, put_on_plane
    use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
-   use rbs_solve_static_curve, only: clean, most_turn
+   use rbs_solve_static_curve, only: clean, most_rotation
    use rbs_solve_static_curved_search, only: curve_search, find_event, find_point, find_turn, find_works, &
                                              layer_of, move_to, no_progress, round_off, work_of_joint
    use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, &
@@ -35,7 +35,7 @@ module rbs_solve_static_curved
    !> A stride may be cut at least this often, however short it becomes; this often for its work.
    integer, parameter :: fewest_cuts = 20, most_cuts_for_work = 8
 
-   !> A way below this share of the largest value is straight to the last digit, and too short for Newton's
+   !> A stride below this share of the largest value is straight to the last digit, and too short for Newton's
    !> method, whose points are off by round-off.
    real(wp), parameter :: close_by = 1.0e-9_wp
 
@@ -134,7 +134,7 @@ contains
          if (allocated(error)) return
       end do
       if (abs(self%goal - self%current%t) > 0.0_wp) then
-         call report_no_way(self, target, error)
+         call report_no_path(self, target, error)
          return
       end if
       if (self%equilibrium%varies) self%load_now = self%load(self%row)
@@ -158,7 +158,7 @@ contains
       class(curved_path), intent(inout) :: self
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: way, length, shortest, limit, turn
+      real(wp) :: distance, length, shortest, limit, rotation_rate
       integer :: cuts
       logical :: done, near
 
@@ -167,27 +167,27 @@ contains
          allocate (self%current%d(size(self%curve%lines%joint)), self%current%v(size(self%curve%lines%joint)))
       end if
       call move_to(self, self%current)
-      way = abs(self%goal - self%current%t)
-      turn = self%structure%largest_turn(self%current%rate)
-      length = min(way, self%next_length)
-      if (turn*length > most_turn) length = most_turn/turn
+      distance = abs(self%goal - self%current%t)
+      rotation_rate = self%structure%largest_rotation(self%current%rate)
+      length = min(distance, self%next_length)
+      if (rotation_rate*length > most_rotation) length = most_rotation/rotation_rate
       shortest = no_stride*max(abs(self%current%t), length)
       cuts = 0
       do
          limit = self%current%t + self%direction*length
-         if (length >= way) limit = self%goal
+         if (length >= distance) limit = self%goal
          call try_stride()
          if (done) exit
          cuts = cuts + 1
          self%cuts = self%cuts + 1
          length = 0.5_wp*length
          if (cuts < fewest_cuts .or. length > shortest) cycle
-         call report_no_way(self, target, error)
+         call report_no_path(self, target, error)
          return
       end do
       if (.not. near) self%next_length = 2.0_wp*length
       if (self%stalled_strides > 20 + 4*self%moving + merge(2000, 0, self%springs%axial_load_varies)) then
-         call report_no_way(self, target, error)
+         call report_no_path(self, target, error)
       end if
 
    contains
@@ -202,7 +202,7 @@ contains
          call find_event(self, limit)
          near = (self%line > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
                 abs(self%trial%t - self%current%t) <= close_by*self%extent .and. &
-                abs(self%trial%t - self%current%t)*self%structure%largest_turn(self%current%rate) <= close_by
+                abs(self%trial%t - self%current%t)*rotation_rate <= close_by
          done = near
          if (.not. near) call find_point(self, limit, .true., done)
          if (done) call self%curve%set(self%structure, self%current, self%trial)
@@ -270,7 +270,7 @@ contains
          if (self%equilibrium%varies) then
             call self%record_corner(self%current%t)
          else
-            call self%record_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
+            call self%record_corner((self%control - self%control_begin)/(self%goal - self%control_begin))
          end if
       end subroutine accept
 
@@ -302,7 +302,7 @@ contains
    end subroutine take_stride
 
    !> Report why the path cannot be continued.
-   subroutine report_no_way(self, target, error)
+   subroutine report_no_path(self, target, error)
       class(curved_path), intent(in) :: self
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
@@ -326,7 +326,7 @@ contains
                           'the top has come as far as its length lets it'//weakest// &
                           '; a driven top cannot follow that, use a dynamic analysis')
       end if
-   end subroutine report_no_way
+   end subroutine report_no_path
 
    !> Corrections that take the springs to equilibrium at the displacement of the top under the axial load.
    subroutine find_balance(self, correction, force, found)

@@ -48,7 +48,7 @@ contains
       real(wp), intent(in) :: limit
       !> Of the deformations, to be added to
       real(wp), intent(inout), optional :: change(:)
-      real(wp) :: clearance, way, finish
+      real(wp) :: clearance, distance, finish
       integer :: i, side
 
       self%line = 0
@@ -59,9 +59,9 @@ contains
                if (.not. abs(rise) > 0.0_wp) cycle
                side = merge(1, -1, rise > 0.0_wp)
                if (lines%one_way(i) == -side) cycle
-               way = side*(merge(lines%upper(i), lines%lower(i), side > 0) - trial%d(i))
-               if (way < clearance*abs(rise)) then
-                  clearance = way/abs(rise)
+               distance = side*(merge(lines%upper(i), lines%lower(i), side > 0) - trial%d(i))
+               if (distance < clearance*abs(rise)) then
+                  clearance = distance/abs(rise)
                   self%line = i
                   finish = merge(lines%upper(i), lines%lower(i), side > 0)
                end if

@@ -30,21 +30,22 @@ module rbs_solve_static_path
 
    !> Tolerances of a point: of the displacement, in shares of the sum over all springs; of equilibrium, in
    !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
-   !> follows a curve, and work is an integral over it, place and work have limits of their own.
-   real(wp), parameter :: of_place = 1.0e-12_wp, of_force = 1.0e-9_wp, of_work = 1.0e-9_wp
-   real(wp), parameter :: of_place_on_curve = 1.0e-10_wp, of_work_on_curve = 1.0e-5_wp
-   !> A way below this share of the height and a force below this share of the axial load have no digits to
-   !> lose.
+   !> follows a curve, and work is an integral over it, displacement and work have limits of their own.
+   real(wp), parameter :: displacement_tolerance = 1.0e-12_wp, force_tolerance = 1.0e-9_wp
+   real(wp), parameter :: curve_displacement_tolerance = 1.0e-10_wp, curve_work_tolerance = 1.0e-5_wp, &
+                          work_tolerance = 1.0e-9_wp
+   !> A displacement below this share of the height and a force below this share of the axial load have no
+   !> digits to lose.
    real(wp), parameter :: no_digits = 1.0e-3_wp
-   !> Way, in shares of the height, and rotation by which stiff springs have forces and works.
-   real(wp), parameter :: no_way = 1.0e-6_wp
+   !> Displacement, in shares of the height, and rotation by which stiff springs have forces and works.
+   real(wp), parameter :: small_motion = 1.0e-6_wp
    !> Round-off of forces and works by the initial stiffness of the springs.
    real(wp), parameter :: digits = 1.0e-13_wp
 
    type :: row_check
-      real(wp) :: place = of_place, work = of_work
-      !> Largest way of all springs, force and work so far [m, N, J]; the work that was missing at the start
-      real(wp) :: largest_place = 0.0_wp, largest_force = 0.0_wp, largest_work = 0.0_wp
+      real(wp) :: displacement = displacement_tolerance, work = work_tolerance
+      !> Largest motion of all springs, force and work so far [m, N, J]; the work missing at the start
+      real(wp) :: largest_displacement = 0.0_wp, largest_force = 0.0_wp, largest_work = 0.0_wp
       real(wp) :: at_begin = 0.0_wp
       !> Displacement up to which these have been measured [m]
       real(wp) :: farthest = 0.0_wp
@@ -56,7 +57,7 @@ module rbs_solve_static_path
    end type row_check
 
    !> Displacement of the top by round-off alone, as a share of the contributions of all springs.
-   real(wp), parameter :: same_place = 2.0e-13_wp
+   real(wp), parameter :: same_displacement = 2.0e-13_wp
 
    !> A force is reached if less than this share of it is missing.
    real(wp), parameter :: no_force = 1.0e-12_wp
@@ -91,7 +92,7 @@ module rbs_solve_static_path
       !> one way, and their stiffness; rates before the corner (springs)
       integer, allocatable :: arrived(:)
       logical, allocatable :: one_way(:)
-      real(wp), allocatable :: k_in(:), way_in(:)
+      real(wp), allocatable :: k_in(:), rate_in(:)
       !> Number of snap-backs; the energy that the structure gave back in them while the displacement of a
       !> test would have been held, and the energy that it gained in others [J]
       integer :: snap_backs = 0
@@ -105,7 +106,7 @@ module rbs_solve_static_path
       !> Axial load at the top without the part that follows the force [N], and energy damped before [J]
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
       !> Driven quantity where the way to the present target begins, and the number of the target, from 0
-      real(wp) :: way_begin = 0.0_wp
+      real(wp) :: control_begin = 0.0_wp
       integer, private :: number = 0
       !> Tolerances of a state of the structure, and whether the present point violates them
       type(row_check), private :: check
@@ -272,7 +273,7 @@ contains
       self%violates_balance = .false.
       do i = 1, size(target)
          self%number = i - 1
-         self%way_begin = self%control
+         self%control_begin = self%control
          ! A path whose first target is not where it begins has a way to it.
          if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%record_corner(0.0_wp)
          call self%advance(target(i), failure)
@@ -363,15 +364,15 @@ contains
       type(error_type), allocatable, intent(inout) :: failure
       character(len=:), allocatable :: fault
       type(energy_type) :: energy
-      real(wp) :: there, gap, missing, place, ways, works
+      real(wp) :: top, displacement_error, work_error, tolerance, reach, works
 
       energy = self%energies()
       call update_rotation(self)
       call self%task%summary%update_energies(energy)
-      there = self%structure%top_displacement(self%springs%d)
-      gap = abs(there - self%displacement)
-      missing = energy%residual - self%check%at_begin
-      place = self%check%place + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)
+      top = self%structure%top_displacement(self%springs%d)
+      displacement_error = abs(top - self%displacement)
+      work_error = energy%residual - self%check%at_begin
+      tolerance = self%check%displacement + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)
       associate (check => self%check, springs => self%springs)
          check%largest_force = max(check%largest_force, abs(self%force))
          check%largest_work = max(check%largest_work, abs(energy%input), abs(energy%spring), &
@@ -381,9 +382,9 @@ contains
             call measure_springs(springs%count, self%structure%initial_stiffness, check%share, springs%d, &
                                  springs%d0, springs%f0, springs%k, check%largest_force, &
                                  check%stiff_force, works)
-            ways = sum(abs(self%structure%arm*springs%d))
+            reach = sum(abs(self%structure%arm*springs%d))
             if (balance_fault() > 0) call update_parts(check, self%structure, springs)
-            check%largest_place = max(check%largest_place, ways)
+            check%largest_displacement = max(check%largest_displacement, reach)
             check%stiff_work = max(check%stiff_work, works)
          end if
       end associate
@@ -391,11 +392,11 @@ contains
       case (0)
          return
       case (1)
-         fault = 'its joints move the top by '//to_text(there)//' m'
+         fault = 'its joints move the top by '//to_text(top)//' m'
       case (2)
          fault = to_text(unbalance)//' N of its forces are out of balance'
       case default
-         fault = to_text(missing)//' J of its work are missing'
+         fault = to_text(work_error)//' J of its work are missing'
       end select
       self%violates_balance = .true.
       call fatal_error(failure, analysis_failed, 'on the way to '//trim(target_of(self, target))// &
@@ -407,14 +408,14 @@ contains
 
    contains
 
-      !> The balance that is violated by more than round-off: place, forces, work; 0: none.
+      !> The balance that is violated by more than round-off: displacement, forces, work; 0: none.
       pure integer function balance_fault()
          balance_fault = 0
-         if (gap > place*self%check%largest_place) then
+         if (displacement_error > tolerance*self%check%largest_displacement) then
             balance_fault = 1
-         else if (unbalance > of_force*self%check%largest_force + digits*self%check%stiff_force) then
+         else if (unbalance > force_tolerance*self%check%largest_force + digits*self%check%stiff_force) then
             balance_fault = 2
-         else if (abs(missing) > self%check%work*self%check%largest_work + digits*self%check%stiff_work) then
+         else if (abs(work_error) > self%check%work*self%check%largest_work + digits*self%check%stiff_work) then
             balance_fault = 3
          end if
       end function balance_fault
@@ -521,16 +522,16 @@ contains
    !> A spring that was put on the end of its line has moved the top by as little: that is where the top is.
    subroutine snap_to_ends(self)
       class(static_path), intent(inout) :: self
-      real(wp) :: there, reach
+      real(wp) :: top, reach
 
       if (self%by_force .or. self%direction /= 0 .or. self%structure%kinematics == finite) return
-      there = self%structure%top_displacement(self%springs%d)
+      top = self%structure%top_displacement(self%springs%d)
       reach = sum(abs(self%structure%arm*self%springs%d))
-      if (abs(there - self%displacement) <= same_place*reach .or. &
-          abs(there - self%displacement) > 2.0_wp*on_the_end*reach) return
-      self%work = self%work + self%force*(there - self%displacement)
-      self%displacement = there
-      self%control = there
+      if (abs(top - self%displacement) <= same_displacement*reach .or. &
+          abs(top - self%displacement) > 2.0_wp*on_the_end*reach) return
+      self%work = self%work + self%force*(top - self%displacement)
+      self%displacement = top
+      self%control = top
    end subroutine snap_to_ends
 
    !> The energies at the present point, and the residual of their balance.
@@ -590,20 +591,20 @@ contains
       integer :: i
 
       self%at_begin = missing_work
-      self%largest_place = no_digits*structure%total_height
+      self%largest_displacement = no_digits*structure%total_height
       self%largest_force = no_digits*maxval(abs(structure%constant_axial))
       allocate (self%share(size(structure%location)))
       do i = 1, size(self%share)
          self%share(i) = merge(1.0_wp/structure%total_height, 1.0_wp, structure%location(i)%kind == flexure)
          if (structure%location(i)%kind == axial) self%share(i) = 0.0_wp
-         d = no_way*structure%total_height*self%share(i)
+         d = small_motion*structure%total_height*self%share(i)
          self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
       end do
       call update_parts(self, structure, springs)
       if (structure%kinematics /= finite) return
-      self%place = of_place_on_curve
-      self%work = of_work_on_curve
+      self%displacement = curve_displacement_tolerance
+      self%work = curve_work_tolerance
    end subroutine begin_check
 
    !> Forces and work of parts without springs.
@@ -613,7 +614,7 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp) :: force, terms, work
 
-      call structure%size_of_parts(springs, no_way, force, terms, work)
+      call structure%size_of_parts(springs, small_motion, force, terms, work)
       self%largest_force = max(self%largest_force, force)
       self%stiff_force = max(self%stiff_force, terms)
       self%stiff_work = max(self%stiff_work, work)

@@ -114,30 +114,30 @@ contains
    subroutine settle(path, error)
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
-      real(wp), dimension(path%structure%coordinates) :: q, way, next
-      real(wp) :: more, next_more, before, change, slope, share, now, largest, line_lengths
+      real(wp), dimension(path%structure%coordinates) :: q, correction, next_correction
+      real(wp) :: force_correction, next_force, before, change, slope, share, now, largest, line_lengths
       type(false_position) :: line
       integer :: round, trial
-      logical :: found, there
+      logical :: found, is_settled
 
       q = path%springs%d
       ! Where nothing but round-off has been displaced, the lengths of the lines are the scale.
-      way = 0.0_wp
+      correction = 0.0_wp
       associate (lower => path%springs%lower, upper => path%springs%upper)
-         where (lower > -unbounded .and. upper < unbounded) way(:size(lower)) = upper - lower
+         where (lower > -unbounded .and. upper < unbounded) correction(:size(lower)) = upper - lower
       end associate
-      line_lengths = measure_of(way, way)
-      there = .false.
+      line_lengths = measure_of(correction, correction)
+      is_settled = .false.
       call path%springs%mark()
-      call path%find_balance(way, more, found)
+      call path%find_balance(correction, force_correction, found)
       largest = max(line_lengths, measure_of(q, q))
-      change = measure_of(way, way)
+      change = measure_of(correction, correction)
       do round = 1, most_rounds
          if (.not. found .or. .not. change < huge(1.0_wp)) exit
          before = change
          call try(1.0_wp)
          if (.not. found) exit
-         slope = measure_of(way, next)
+         slope = measure_of(correction, next_correction)
          ! The trial has gone too far: find the share of the correction at which the next one is across it.
          if (slope < -0.3_wp*before) then
             line = false_position(at_low=before, at_high=slope)
@@ -147,23 +147,23 @@ contains
                call try(share - now)
                now = share
                if (.not. found) exit
-               slope = measure_of(way, next)
+               slope = measure_of(correction, next_correction)
                if (abs(slope) <= 0.1_wp*before) exit
                call line%narrow(share, slope)
             end do
             if (.not. found) exit
          end if
-         change = measure_of(next, next)
+         change = measure_of(next_correction, next_correction)
          largest = max(largest, measure_of(q, q))
-         there = change <= settled**2*largest .or. &
+         is_settled = change <= settled**2*largest .or. &
                  (change <= nearly_settled**2*largest .and. change >= 0.25_wp*before)
-         way = next
-         more = next_more
-         if (.not. there) cycle
+         correction = next_correction
+         force_correction = next_force
+         if (.not. is_settled) cycle
          call try(1.0_wp)
          exit
       end do
-      if (.not. there .or. path%springs%stuck) then
+      if (.not. is_settled .or. path%springs%stuck) then
          call fatal_error(error, analysis_failed, 'initial: no equilibrium was found at the displacement '// &
                           to_text(path%displacement)//' m in which the first analysis ended; let '// &
                           'the motion come to rest first, or change axial_load')
@@ -176,12 +176,12 @@ contains
       subroutine try(part)
          real(wp), intent(in) :: part
 
-         q = q + part*way
-         path%force = path%force + part*more
+         q = q + part*correction
+         path%force = path%force + part*force_correction
          call path%springs%restore()
          call path%springs%move_all(q)
          found = .not. path%springs%stuck
-         if (found) call path%find_balance(next, next_more, found)
+         if (found) call path%find_balance(next_correction, next_force, found)
       end subroutine try
 
       !> Product of two changes of deformations, measured by the initial stiffness [J].

@@ -43,12 +43,12 @@ module rbs_solve_static_straight
       integer :: ends = 0
       !> Last motion of the control, its largest value, and the largest share of the path to the
       !> present target
-      integer :: last_way = 0
+      integer :: last_direction = 0
       real(wp) :: farthest = 0.0_wp, share = 0.0_wp
-      !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; way of
-      !> the load since then [m]
+      !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; motion
+      !> of the load since then [m]
       logical :: in_loop = .false.
-      real(wp) :: loop_control = 0.0_wp, loop_force = 0.0_wp, loop_work = 0.0_wp, loop_way = 0.0_wp
+      real(wp) :: loop_control = 0.0_wp, loop_force = 0.0_wp, loop_work = 0.0_wp, loop_motion = 0.0_wp
    contains
       procedure :: advance
       procedure :: solve_line
@@ -109,14 +109,14 @@ contains
          if (self%direction == 0 .or. (self%direction /= direction .and. .not. self%goes_back)) then
             went_back = self%goes_back
             ! Where the top turns back at a target, springs turn as they must.
-            if (direction /= self%last_way .and. .not. went_back) self%arrived = 0
+            if (direction /= self%last_direction .and. .not. went_back) self%arrived = 0
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%crushed_joint() > 0) return
             call self%check_point(target, self%equilibrium%unbalance, .true., error)
             if (allocated(error)) return
             if (self%goes_back .and. .not. went_back) call begin_loop(self)
             call begin_line(self, self%direction)
-            self%last_way = self%direction
+            self%last_direction = self%direction
          end if
          if (self%goes_back) then
             if (self%ends == 0 .or. direction*self%finish < -max(abs(target), self%farthest)) then
@@ -149,7 +149,7 @@ contains
       subroutine report_corner()
          real(wp) :: share
 
-         share = (self%control - self%way_begin)/(target - self%way_begin)
+         share = (self%control - self%control_begin)/(target - self%control_begin)
          if (share > self%share) idle = 0
          self%share = max(self%share, share)
          call self%record_corner(self%share)
@@ -167,7 +167,7 @@ contains
       self%loop_control = self%control
       self%loop_force = self%force
       self%loop_work = self%work
-      self%loop_way = 0.0_wp
+      self%loop_motion = 0.0_wp
    end subroutine begin_loop
 
    !> Report that the way back has no end.
@@ -205,7 +205,7 @@ contains
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way, residual, along
+      real(wp) :: distance, residual, along
       logical :: turns
 
       self%arrived = 0
@@ -230,9 +230,9 @@ contains
             self%force_start = self%force_start + line%force_rate*residual
          end if
       end associate
-      call nearest_end(self%springs, self%q(:self%moving), self%rate(:self%moving), way, self%ends)
+      call nearest_end(self%springs, self%q(:self%moving), self%rate(:self%moving), distance, self%ends)
       self%finish = direction*huge(1.0_wp)
-      if (self%ends > 0) self%finish = self%start + direction*way
+      if (self%ends > 0) self%finish = self%start + direction*distance
    end subroutine begin_line
 
    !> Share of the rates in a correction, measured by the initial stiffness.
@@ -299,7 +299,7 @@ contains
          moved = displacement - self%displacement &
                                 + line%dead_load_work_rate*(control - self%control)
          self%work = self%work + 0.5_wp*(force + self%force)*moved
-         self%loop_way = self%loop_way + moved
+         self%loop_motion = self%loop_motion + moved
       end associate
       call self%record_crossing(displacement, force)
       self%force = force
@@ -313,14 +313,14 @@ contains
       !> back, would release the work that the loads of all storeys do while their force changes from the one
       !> to the other, less that of the loop. Where energy is missing no test follows.
       subroutine end_loop()
-         real(wp) :: at, way, energy
+         real(wp) :: at, motion, energy
 
          if (self%goes_back .or. .not. abs(self%control - self%loop_control) > 0.0_wp) return
          associate (line => self%equilibrium)
             at = self%force_start + line%force_rate*(self%loop_control - self%start)
-            way = (1.0_wp + line%dead_load_work_rate)*(self%loop_control - self%control)
+            motion = (1.0_wp + line%dead_load_work_rate)*(self%loop_control - self%control)
          end associate
-         energy = 0.5_wp*((self%loop_force + at)*(self%loop_way + way) - (at + self%force)*way) &
+         energy = 0.5_wp*((self%loop_force + at)*(self%loop_motion + motion) - (at + self%force)*motion) &
                   - (self%work - self%loop_work)
          self%released = self%released + max(energy, 0.0_wp)
          self%gained = self%gained + max(-energy, 0.0_wp)

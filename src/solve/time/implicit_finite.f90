@@ -29,7 +29,7 @@ module rbs_solve_time_implicit_finite
    public :: finite_stepper
 
    !> Largest rotation in one correction [rad].
-   real(wp), parameter :: most_turn = 1.0_wp
+   real(wp), parameter :: most_rotation = 1.0_wp
    !> Below this share of the forces a change of a spring's force is round-off.
    real(wp), parameter :: no_change = 1.0e-6_wp
    !> Forces that residuals are compared with are no smaller, so that nothing overflows [N, N m].
@@ -459,7 +459,7 @@ contains
          self%dx(:, i) = self%right(self%per*i - 2:self%per*i, 1)
          if (.not. self%column%opens) self%dn(i) = per_force*self%right(self%per*i - 3, 1)
       end do
-      if (self%regular) self%regular = maxval(abs(self%dx(3, :))) < most_turn
+      if (self%regular) self%regular = maxval(abs(self%dx(3, :))) < most_rotation
    end subroutine correct
 
    !> Add the share of a joint in the tangent.

@@ -92,9 +92,9 @@ contains
                call fatal_error(error, analysis_failed, 'the step of '//to_text(part)//' s at time '// &
                                 to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
                                 to_text(self%tolerance)//'; the largest error is in '// &
-                                trim(spring_name(state%motion%structure%location(i)))//'. Rows up to there are '// &
-                                "kept. Give a larger tolerance, or method = 'generalised_alpha' "// &
-                                'for a stiff column')
+                                trim(spring_name(state%motion%structure%location(i)))//'. Rows up to '// &
+                                "there are kept. Give a larger tolerance, or method = "// &
+                                "'generalised_alpha' for a stiff column")
                return
             end if
          end do

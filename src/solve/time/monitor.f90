@@ -145,7 +145,7 @@ contains
          rotation = abs(q(2))
       else
          displacement = motion%structure%top_displacement(q)
-         rotation = motion%structure%largest_turn(q)
+         rotation = motion%structure%largest_rotation(q)
       end if
       i = motion%base_spring
       if (i > 0) then

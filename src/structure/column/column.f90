@@ -112,7 +112,7 @@ module rbs_structure_column_column
       procedure :: channels
       procedure :: fill_row
       procedure :: put_under
-      procedure :: largest_turn
+      procedure :: largest_rotation
    end type column_type
 
 contains
@@ -546,7 +546,7 @@ contains
       end do
    end subroutine fill_row
 
-   pure real(wp) function largest_turn(self, d) result(largest)
+   pure real(wp) function largest_rotation(self, d) result(largest)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: rotation
@@ -558,6 +558,6 @@ contains
          rotation = rotation + d(i)
          largest = max(largest, abs(rotation))
       end do
-   end function largest_turn
+   end function largest_rotation
 
 end module rbs_structure_column_column
