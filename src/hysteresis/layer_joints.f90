@@ -208,7 +208,7 @@ contains
       real(wp), intent(in), contiguous :: lower(:), upper(:)
       integer, intent(in), contiguous :: one_way(:)
       logical, intent(out) :: stay
-      real(wp) :: z(2), clearance
+      real(wp) :: z(2), least
       integer :: j
 
       stay = .true.
@@ -216,12 +216,11 @@ contains
          associate (i => self%first(j), n => self%last(j), at => self%before + 2*j)
             if (is_within_clearance(d(at - 1:at), self%seen(:, j), self%reach(j), self%clearance(j))) cycle
             z = d(at - 1:at)
-            call find_clearance(n - i + 1, self%y(i:n), z, lower(i:n), upper(i:n), clearance)
-            stay = clearance >= 0.0_wp .and. maxval(abs(z)) < out_of_bounds
+            call find_clearance(n - i + 1, self%y(i:n), z, lower(i:n), upper(i:n), least)
+            stay = least >= 0.0_wp .and. maxval(abs(z)) < out_of_bounds
             if (.not. stay) return
             self%seen(:, j) = z
-            self%clearance(j) = min(clearance, out_of_bounds) &
-                                - round_off*(abs(z(1)) + self%reach(j)*abs(z(2)))
+            self%clearance(j) = min(least, out_of_bounds) - round_off*(abs(z(1)) + self%reach(j)*abs(z(2)))
             ! The rear end of a line that is left when the motion turns moves with the layer.
             if (any(one_way(i:n) /= 0)) self%clearance(j) = -1.0_wp
          end associate

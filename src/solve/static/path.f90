@@ -31,9 +31,8 @@ module rbs_solve_static_path
    !> Tolerances of a point: of the displacement, in shares of the sum over all springs; of equilibrium, in
    !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
    !> follows a curve, and work is an integral over it, displacement and work have limits of their own.
-   real(wp), parameter :: displacement_tolerance = 1.0e-12_wp, force_tolerance = 1.0e-9_wp
-   real(wp), parameter :: curve_displacement_tolerance = 1.0e-10_wp, curve_work_tolerance = 1.0e-5_wp, &
-                          work_tolerance = 1.0e-9_wp
+   real(wp), parameter :: force_tolerance = 1.0e-9_wp, curve_work_tolerance = 1.0e-5_wp
+   real(wp), parameter :: curve_displacement_tolerance = 1.0e-10_wp
    !> A displacement below this share of the height and a force below this share of the axial load have no
    !> digits to lose.
    real(wp), parameter :: no_digits = 1.0e-3_wp
@@ -43,7 +42,8 @@ module rbs_solve_static_path
    real(wp), parameter :: digits = 1.0e-13_wp
 
    type :: row_check
-      real(wp) :: displacement = displacement_tolerance, work = work_tolerance
+      !> Tolerances of displacement and work
+      real(wp) :: displacement = 1.0e-12_wp, work = 1.0e-9_wp
       !> Largest motion of all springs, force and work so far [m, N, J]; the work missing at the start
       real(wp) :: largest_displacement = 0.0_wp, largest_force = 0.0_wp, largest_work = 0.0_wp
       real(wp) :: at_begin = 0.0_wp
@@ -364,14 +364,14 @@ contains
       type(error_type), allocatable, intent(inout) :: failure
       character(len=:), allocatable :: fault
       type(energy_type) :: energy
-      real(wp) :: top, displacement_error, work_error, tolerance, reach, works
+      real(wp) :: top, displacement_error, residual, tolerance, reach, works
 
       energy = self%energies()
       call update_rotation(self)
       call self%task%summary%update_energies(energy)
       top = self%structure%top_displacement(self%springs%d)
       displacement_error = abs(top - self%displacement)
-      work_error = energy%residual - self%check%at_begin
+      residual = energy%residual - self%check%at_begin
       tolerance = self%check%displacement + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)
       associate (check => self%check, springs => self%springs)
          check%largest_force = max(check%largest_force, abs(self%force))
@@ -396,7 +396,7 @@ contains
       case (2)
          fault = to_text(unbalance)//' N of its forces are out of balance'
       case default
-         fault = to_text(work_error)//' J of its work are missing'
+         fault = to_text(residual)//' J of its work are missing'
       end select
       self%violates_balance = .true.
       call fatal_error(failure, analysis_failed, 'on the way to '//trim(target_of(self, target))// &
@@ -415,7 +415,7 @@ contains
             balance_fault = 1
          else if (unbalance > force_tolerance*self%check%largest_force + digits*self%check%stiff_force) then
             balance_fault = 2
-         else if (abs(work_error) > self%check%work*self%check%largest_work + digits*self%check%stiff_work) then
+         else if (abs(residual) > self%check%work*self%check%largest_work + digits*self%check%stiff_work) then
             balance_fault = 3
          end if
       end function balance_fault

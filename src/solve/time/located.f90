@@ -93,7 +93,7 @@ contains
                                 to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
                                 to_text(self%tolerance)//'; the largest error is in '// &
                                 trim(spring_name(state%motion%structure%location(i)))//'. Rows up to '// &
-                                "there are kept. Give a larger tolerance, or method = "// &
+                                'there are kept. Give a larger tolerance, or method = '// &
                                 "'generalised_alpha' for a stiff column")
                return
             end if
