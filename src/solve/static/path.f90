@@ -239,7 +239,7 @@ contains
          tension = -self%structure%constant_axial(i)
          call self%springs%load_to(i, tension, found)
          if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
-         call fatal_error(error, analysis_failed, trim(spring_name(self%structure%location(i)))//" (rule "// &
+         call fatal_error(error, analysis_failed, trim(spring_name(self%structure%location(i)))//' (rule '// &
                           "'"//trim(self%springs%rules%name(self%springs%rules%of(i)))//"') cannot carry "// &
                           'the '//trim(merge('compression', 'tension    ', tension < 0.0_wp))//' of '// &
                           to_text(abs(tension))//' N from axial load and weight: it has no stiffness '// &
