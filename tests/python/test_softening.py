@@ -5,6 +5,8 @@ Closed forms: springs in series under one force. Past the cap of one spring the 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -112,3 +114,30 @@ def test_snap_back_of_exact_rotations_is_reported():
             column(shear=SOFT, kinematics="finite", axial_load=1.0), displacement=[0.05, 0.5]
         )
     assert caught.value.result.moment[-1, 0] == pytest.approx(240e3, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("n", "height", "load", "hinge", "shear"),
+    [
+        (3, 3.41, 16600.0, (4.29e-3, 188e3, 0.0133, 203e3, 0.0171), (1.72e-3, 54200.0, 8.56e-3)),
+        (4, 2.03, 50100.0, (1.66e-3, 339e3, 7.5e-3, 379e3, 2.29e-3), (2.79e-3, 174e3, 0.0119)),
+        (5, 3.54, 17200.0, (1.22e-3, 203e3, 5.25e-3, 213e3, 3.69e-3), (1.64e-3, 59600.0, 9.7e-3)),
+    ],
+)
+def test_a_joint_that_slips_at_its_residual_force_leaves_the_others_at_rest(
+    n, height, load, hinge, shear
+):
+    """Rates of round-off must not send them along their lines; rows between change nothing."""
+    shear = PeakOriented(
+        *shear, 1.1 * shear[1], 0.9 * shear[2], f_res=0.1 * shear[1], lambda_h=20.0, s_min=0.3
+    )
+    chain = rbsdem.Column(
+        height, MASS, shear, PeakOriented(*hinge, f_res=0.1 * hinge[1]), n=n, axial_load=load,
+        kinematics="pdelta",
+    )  # fmt: skip
+    turns = height * np.array([0, 0.01, -0.01, 0.02, -0.02, 0.03, -0.03, 0.04])
+    steps = [np.linspace(*pair, 9)[1:] for pair in pairwise(turns)]
+    whole = rbsdem.cyclic(chain, displacement=turns[1:])
+    assert abs(whole.force[-1]) == pytest.approx(shear.f_res, rel=1e-12)
+    parts = rbsdem.cyclic(chain, displacement=np.concatenate(steps))
+    np.testing.assert_allclose(whole.force, parts.force[7::8], rtol=1e-9)

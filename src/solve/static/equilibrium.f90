@@ -48,6 +48,9 @@ module rbs_solve_static_equilibrium
    !> two right-hand sides, and one number more, as processors take two or four at a time.
    integer, parameter :: most_dense = 4, row_length = most_dense + 4
 
+   !> Rate of a spring at rest, as a share of that of a spring without stiffness.
+   real(wp), parameter :: at_rest = 8.0_wp*epsilon(1.0_wp)
+
    !> A pivot that is round-off of numbers of the order of one.
    real(wp), parameter :: no_pivot = 1.0e-13_wp
 
@@ -348,7 +351,9 @@ contains
          if (.not. found) return
          rate = self%moved(:, 1)
          call springs%joints%open_layers(rate)
-         if (.not. self%refines) then
+         if (self%refines) then
+            call clear_at_rest()
+         else
             call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
          end if
          self%force_rate = y(1)
@@ -368,6 +373,20 @@ contains
       end associate
 
    contains
+
+      !> Where a spring without stiffness moves alone, the rates of all others are round-off: a spring on a
+      !> corner of its curve must not be sent either way by it.
+      subroutine clear_at_rest()
+         real(wp) :: moved(self%moving)
+
+         associate (k => springs%k(:self%moving), rate => rate(:self%moving))
+            if (all(abs(k) > 0.0_wp)) return
+            moved = abs(rate)
+            where (self%structure%place(:self%moving)%kind == flexure) &
+               moved = moved*self%structure%total_height
+            where (moved < at_rest*maxval(moved, mask=.not. abs(k) > 0.0_wp)) rate = 0.0_wp
+         end associate
+      end subroutine clear_at_rest
 
       !> Changes per unit of the driven quantity (1), or by the residual (2), and the force of these changes.
       subroutine solve(j, displacement, regular)
