@@ -382,7 +382,7 @@ contains
          associate (k => springs%k(:self%moving), rate => rate(:self%moving))
             if (all(abs(k) > 0.0_wp)) return
             moved = abs(rate)
-            where (self%structure%place(:self%moving)%kind == flexure) &
+            where (self%structure%location(:self%moving)%kind == flexure) &
                moved = moved*self%structure%total_height
             where (moved < at_rest*maxval(moved, mask=.not. abs(k) > 0.0_wp)) rate = 0.0_wp
          end associate

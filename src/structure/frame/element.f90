@@ -140,7 +140,7 @@ contains
       !> Initial stiffness of all springs
       real(wp), intent(in) :: k(:)
       real(wp) :: off_chord
-      integer :: i, j
+      integer :: j
 
       if (self%is_panel .or. self%flexural_rigidity > 0.0_wp) return
       off_chord = 0.0_wp
