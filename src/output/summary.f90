@@ -125,6 +125,7 @@ contains
       type(figure_type), allocatable, intent(out) :: list(:)
       real(wp) :: drop, freed
       logical :: crushed, snapped
+      logical, allocatable :: applies(:)
 
       drop = merge(self%fall%drop, ieee_value(drop, ieee_quiet_nan), self%fall%rests)
       freed = merge(self%fall%freed, ieee_value(freed, ieee_quiet_nan), self%fall%rests)
@@ -159,7 +160,8 @@ contains
               figure_type('lost_axial_load', 'N', self%fall%axial_load, crushed), &
               figure_type('axial_capacity', 'N', self%fall%capacity, crushed), &
               figure_type('fall', 'm', drop, crushed), figure_type('fall_energy', 'J', freed, crushed)]
-      list = pack(list, list%applies)
+      applies = list%applies
+      list = pack(list, applies)
    end subroutine get_figures
 
    !> How the run ended, if nothing failed.
