@@ -200,7 +200,7 @@ def test_standard_error_covers_the_truth():
                 free, Target((d, f)), "nrmse", 1, lambda done, best: None,
             )  # fmt: skip
             best = _elastic_best(one, free["shear.k"])
-            (found,), _ = determine(one, np.array([free["shear.k"].place(best)]))
+            (found,), _ = determine(one, np.array([free["shear.k"].fraction(best)]))
             inside += abs(best - 3e7) < 2 * found.standard_error
     assert 175 <= inside <= 199
 
@@ -333,14 +333,14 @@ def test_bounds_and_units():
     assert given.refused > 0
 
 
-def test_parameter_places():
+def test_parameter_fractions():
     for number in (Parameter(3.0, 1.0, 10.0), Parameter(0.0, -2.0, 5.0), Parameter(0.5, 0.0, 1.0)):
-        for place in (0.0, 0.2, 0.7, 1.0):
-            assert number.place(number.at(place)) == pytest.approx(place, abs=1e-12)
-        assert number.at(number.place(number.value)) == pytest.approx(number.value, abs=1e-12)
+        for fraction in (0.0, 0.2, 0.7, 1.0):
+            assert number.fraction(number.at(fraction)) == pytest.approx(fraction, abs=1e-12)
+        assert number.at(number.fraction(number.value)) == pytest.approx(number.value, abs=1e-12)
         step = 1e-6
         slope = (number.at(0.5 + step) - number.at(0.5 - step)) / (2 * step)
-        assert number.per_place(number.at(0.5)) == pytest.approx(slope, rel=1e-6)
+        assert number.per_fraction(number.at(0.5)) == pytest.approx(slope, rel=1e-6)
         assert (number.at(-0.1), number.at(1.1)) == (number.low, number.high)
 
 
@@ -393,11 +393,11 @@ def test_differences_look_the_other_way_where_a_column_is_refused():
     number = Parameter(3e7, 1e7, 9e7)
     test = Target(response(ELASTIC, path(ELASTIC)))
     one = Misfit(build, {"shear.k": number}, test, "nrmse", 1, lambda done, best: None)
-    places = np.array([number.place(3e7)])
-    found = Search(one, 0, 100, None)._jacobian(places, COARSE)[:, 0]
-    below = one.vector(places - COARSE)
+    fractions = np.array([number.fraction(3e7)])
+    found = Search(one, 0, 100, None)._jacobian(fractions, COARSE)[:, 0]
+    below = one.vector(fractions - COARSE)
     assert np.max(np.abs(found)) > 0.01
-    assert found == pytest.approx((one.vector(places) - below) / COARSE, abs=1e-9)
+    assert found == pytest.approx((one.vector(fractions) - below) / COARSE, abs=1e-9)
     assert one.refused == 1
 
 

@@ -161,7 +161,7 @@ curves.secant_stiffness curves.strength_loss curves.summarise curves.turning_poi
 fragility.Hazard fragility.CollapseSearch fragility.fit_fragility fragility.stripes
 motions.corrected motions.read_motion motions.read_motions motions.resampled motions.sequence
 motions.synthetic peer.net_force peer.paper_columns peer.read_peer peer.read_specimens
-objects.bilinear.response objects.bilinear.split objects.case.joints objects.case.place_of
+objects.bilinear.response objects.bilinear.split objects.case.joints objects.case.index_of
 objects.case.double_curvature objects.concrete.stress objects.curve.idealise
 objects.damping.rayleigh objects.ensemble.history
 objects.fragility.band objects.fragility.mean_annual_frequency objects.fragility.probability

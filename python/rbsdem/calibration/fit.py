@@ -1,6 +1,6 @@
 """The function `calibrate`: search, refusals, and how well the test determines what was free.
 
-J is the derivative of the error vector with respect to the places of the parameters, at the fit.
+J is the derivative of the error vector with respect to the fractions of the parameters, at the fit.
 Parameters whose columns of J are almost parallel cannot be distinguished: their correlation is that
 of (J'J)^-1.
 
@@ -89,7 +89,7 @@ def undetermined(
         unwarned(),
         Misfit(parameters.build, chosen, target, "nrmse", 1, lambda done, best: None) as misfit,
     ):
-        return without_effect(misfit, _looks(misfit.start_places(), 0))
+        return without_effect(misfit, _looks(misfit.start_fractions(), 0))
 
 
 def calibrate(
@@ -167,13 +167,13 @@ def calibrate(
     # Warnings about the many columns of the search do not help the user.
     with unwarned(), showing as show:
         with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
-            start = misfit.start_places()
+            start = misfit.start_fractions()
             misfit.column(start)
             refuse(misfit, without_effect(misfit, _looks(start, seed)))
             status = Search(misfit, seed, evaluations, seconds).run()
-            places = misfit.best_places.copy()
-            found, correlation = determine(misfit, places)
-        fitted = cast(AnyStructure, misfit.column(places))
+            fractions = misfit.best_fractions.copy()
+            found, correlation = determine(misfit, fractions)
+        fitted = cast(AnyStructure, misfit.column(fractions))
         before, after = (_compared(tried, target, column) for tried in (column, fitted))
     lines = tuple(warnings_of(found, correlation))
     for line in lines:
@@ -371,23 +371,23 @@ TOO_ALIKE = 0.95
 _STEPS = 0.005, 0.05
 
 
-def without_effect(misfit: Misfit, places: list[Array]) -> list[str]:
+def without_effect(misfit: Misfit, fractions: list[Array]) -> list[str]:
     """Return the names of the parameters that change no force between their bounds.
 
     Parameters
     ----------
     misfit : Misfit
         The misfit.
-    places : list of ndarray, shape (p,)
+    fractions : list of ndarray, shape (p,)
         Points from which each parameter alone is moved to its bounds.
     """
     idle = list(range(len(misfit.free)))
-    for base in places:
+    for base in fractions:
         base_vector = misfit.vector(base)
         if refused(base_vector):
             continue
         for i in list(idle):
-            ends = [_moved(base, i, place) for place in (0.0, 0.5, 1.0)]
+            ends = [_moved(base, i, fraction) for fraction in (0.0, 0.5, 1.0)]
             for vector in misfit.vectors(ends):
                 if not refused(vector) and np.max(np.abs(vector - base_vector)) > NO_EFFECT:
                     idle.remove(i)
@@ -412,13 +412,13 @@ def refuse(misfit: Misfit, names: list[str]) -> None:
     )
 
 
-def determine(misfit: Misfit, places: Array) -> tuple[tuple[Fitted, ...], Array]:
+def determine(misfit: Misfit, fractions: Array) -> tuple[tuple[Fitted, ...], Array]:
     """Return the parameters at a fit, how well the test determines them, and their correlation.
 
     The correlation is NaN for a parameter with which no force changes.
     """
-    size, vector = places.size, misfit.vector(places)
-    jacobian = _derivatives(misfit, places, vector)
+    size, vector = fractions.size, misfit.vector(fractions)
+    jacobian = _derivatives(misfit, fractions, vector)
     seen = np.sqrt(np.mean(jacobian**2, axis=0)) > NO_EFFECT
     error, correlation = np.full(size, np.inf), np.full((size, size), np.nan)
     if seen.any():
@@ -429,12 +429,12 @@ def determine(misfit: Misfit, places: Array) -> tuple[tuple[Fitted, ...], Array]
         error[seen] = np.sqrt(np.diag(covariance))
     np.fill_diagonal(correlation, 1.0)
     found = []
-    for i, ((name, one), place) in enumerate(zip(misfit.free.items(), places, strict=True)):
-        value = one.at(place)
-        bound = "low" if place < AT_BOUND else "high" if place > 1 - AT_BOUND else ""
+    for i, ((name, one), fraction) in enumerate(zip(misfit.free.items(), fractions, strict=True)):
+        value = one.at(fraction)
+        bound = "low" if fraction < AT_BOUND else "high" if fraction > 1 - AT_BOUND else ""
         start = name, one.unit, one.what, one.value, one.low, one.high, value
-        spread_of_value = float(error[i] * abs(one.per_place(value)))
-        effect = _effect(misfit, places, i, one, vector)
+        spread_of_value = float(error[i] * abs(one.per_fraction(value)))
+        effect = _effect(misfit, fractions, i, one, vector)
         found.append(Fitted(*start, spread_of_value, *effect, bound))
     return tuple(found), correlation
 
@@ -464,30 +464,30 @@ def warnings_of(found: Sequence[Fitted], correlation: Array) -> list[str]:
     ]
 
 
-def _moved(places: Array, i: int, place: float) -> Array:
-    moved = places.copy()
-    moved[i] = place
+def _moved(fractions: Array, i: int, fraction: float) -> Array:
+    moved = fractions.copy()
+    moved[i] = fraction
     return moved
 
 
-def _derivatives(misfit: Misfit, places: Array, vector: Array) -> Array:
-    """Return the derivative of the vector with respect to each place."""
-    jacobian = np.zeros((vector.size, places.size))
-    for i in range(places.size):
+def _derivatives(misfit: Misfit, fractions: Array, vector: Array) -> Array:
+    """Return the derivative of the vector with respect to each fraction."""
+    jacobian = np.zeros((vector.size, fractions.size))
+    for i in range(fractions.size):
         for step in _STEPS:
-            jacobian[:, i] = _derivative(misfit, places, vector, i, step)
+            jacobian[:, i] = _derivative(misfit, fractions, vector, i, step)
             if rms(jacobian[:, i]) > NO_EFFECT:
                 break
     return jacobian
 
 
-def _derivative(misfit: Misfit, places: Array, vector: Array, i: int, step: float) -> Array:
+def _derivative(misfit: Misfit, fractions: Array, vector: Array, i: int, step: float) -> Array:
     """Return central differences; one-sided ones at a bound or next to a refused column."""
-    ends = np.clip([places[i] - step, places[i] + step], 0.0, 1.0)
-    sides = [(end, misfit.vector(_moved(places, i, end))) for end in ends]
+    ends = np.clip([fractions[i] - step, fractions[i] + step], 0.0, 1.0)
+    sides = [(end, misfit.vector(_moved(fractions, i, end))) for end in ends]
     known = [(end, other) for end, other in sides if not refused(other)]
     if len(known) < 2:
-        known.append((places[i], vector))
+        known.append((fractions[i], vector))
     if len(known) < 2 or known[0][0] == known[1][0]:
         return np.zeros(vector.size)
     return np.asarray((known[1][1] - known[0][1]) / (known[1][0] - known[0][0]))
@@ -520,17 +520,17 @@ def _clustered(jacobian: Array, error: Array, inverse: Array, groups: Array) -> 
 
 
 def _effect(
-    misfit: Misfit, places: Array, i: int, one: Parameter, vector: Array
+    misfit: Misfit, fractions: Array, i: int, one: Parameter, vector: Array
 ) -> tuple[float, float]:
     """Return change of force and growth of the loss for 10 % more or less of a parameter.
 
     For a parameter that may be zero or negative it is 10 % of the distance between its bounds.
     """
-    value, effect, rise = one.at(places[i]), 0.0, math.nan
+    value, effect, rise = one.at(fractions[i]), 0.0, math.nan
     step = CHANGE * (value if one.logarithmic else one.high - one.low)
     for end in (value - step, value + step):
-        moved = _moved(places, i, one.place(min(max(end, one.low), one.high)))
-        if moved[i] == places[i]:
+        moved = _moved(fractions, i, one.fraction(min(max(end, one.low), one.high)))
+        if moved[i] == fractions[i]:
             continue
         other = misfit.vector(moved)
         if not refused(other):

@@ -102,7 +102,7 @@ class Target:
 
 
 class Misfit:
-    """The error of a column as a function of the places of its free parameters, each from 0 to 1.
+    """The error of a column as a function of the fractions of its free parameters, from 0 to 1.
 
     It counts the analyses and keeps the best point.
 
@@ -134,7 +134,7 @@ class Misfit:
         self._build, self.free, self.target, self.loss = build, dict(free), target, loss
         self._jobs, self._show = jobs, show
         self.evaluations = self.refused = self.failed = 0
-        self.best, self.best_places = np.inf, self.start_places()
+        self.best, self.best_fractions = np.inf, self.start_fractions()
         self._pool: ThreadPoolExecutor | None = None
 
     def __enter__(self) -> Misfit:
@@ -152,30 +152,30 @@ class Misfit:
         """Length of the vector."""
         return POINTS + (2 if self.loss == "balanced" else 0)
 
-    def start_places(self) -> Array:
-        """Return the places of the initial values of the column."""
-        return np.array([one.place(one.value) for one in self.free.values()])
+    def start_fractions(self) -> Array:
+        """Return the fractions of the initial values of the column."""
+        return np.array([one.fraction(one.value) for one in self.free.values()])
 
-    def values(self, places: Array) -> dict[str, float]:
+    def values(self, fractions: Array) -> dict[str, float]:
         """Return the values by name."""
         return {
-            name: one.at(float(place))
-            for (name, one), place in zip(self.free.items(), places, strict=True)
+            name: one.at(float(fraction))
+            for (name, one), fraction in zip(self.free.items(), fractions, strict=True)
         }
 
-    def column(self, places: Array) -> Structure:
+    def column(self, fractions: Array) -> Structure:
         """Return the column, or raise `InputError` if it is refused."""
-        return self._build(self.values(places))
+        return self._build(self.values(fractions))
 
-    def vector(self, places: Array) -> Array:
+    def vector(self, fractions: Array) -> Array:
         """Return the error vector, whose mean square is to be minimised."""
-        return self.vectors([places])[0]
+        return self.vectors([fractions])[0]
 
     def vectors(self, several: Sequence[Array]) -> list[Array]:
         """Return the error vectors of several points, in their order."""
         run = self._pool.map if self._pool is not None and len(several) > 1 else map
         found = []
-        for places, (vector, status) in zip(several, run(self._one, several), strict=True):
+        for fractions, (vector, status) in zip(several, run(self._one, several), strict=True):
             found.append(vector)
             if status == "refused":
                 self.refused += 1
@@ -184,13 +184,13 @@ class Misfit:
             self.failed += status == "failed"
             size = rms(vector)
             if size < self.best:
-                self.best, self.best_places = size, np.array(places, dtype=float)
+                self.best, self.best_fractions = size, np.array(fractions, dtype=float)
             self._show(self.evaluations, f"nrmse {self.best:.4f}")
         return found
 
-    def _one(self, places: Array) -> tuple[Array, str]:
+    def _one(self, fractions: Array) -> tuple[Array, str]:
         try:
-            force, failed = reached_force(self.column(places), self.target.displacement)
+            force, failed = reached_force(self.column(fractions), self.target.displacement)
         except InputError:
             return np.full(self.size, REFUSED), "refused"
         return self._vector(force), "failed" if failed else "completed"
@@ -244,7 +244,7 @@ STARTS = 6
 #: Steps of finite differences as shares of the distance between the bounds.
 COARSE, MIDDLE, FINE = 0.02, 0.005, 0.0005
 
-#: A place closer to a bound than this is taken to be on it.
+#: A fraction closer to a bound than this is taken to be on it.
 AT_BOUND = 1e-3
 
 
@@ -277,10 +277,10 @@ class Search:
         """Search, and return the reason for the end."""
         status = "converged"
         try:
-            for places in self._sample():
-                self._descend(places, COARSE, "trf", 12)
-            self._descend(self.misfit.best_places, MIDDLE, "trf", 12)
-            self._descend(self.misfit.best_places, FINE, "dogbox", 20)
+            for fractions in self._sample():
+                self._descend(fractions, COARSE, "trf", 12)
+            self._descend(self.misfit.best_fractions, MIDDLE, "trf", 12)
+            self._descend(self.misfit.best_fractions, FINE, "dogbox", 20)
         except SearchStopped as stopped:
             status = str(stopped)
         except KeyboardInterrupt:
@@ -289,18 +289,18 @@ class Search:
 
     def _vectors(self, several: list[Array]) -> list[Array]:
         memory = self._memory
-        if any(places.tobytes() not in memory for places in several):
+        if any(fractions.tobytes() not in memory for fractions in several):
             if self.misfit.evaluations >= self._evaluations:
                 raise SearchStopped("evaluations used up")
             if time.perf_counter() > self._until:
                 raise SearchStopped("time used up")
-            wanted = [places for places in several if places.tobytes() not in memory]
+            wanted = [fractions for fractions in several if fractions.tobytes() not in memory]
             if len(memory) > 64:
                 wanted = several
                 memory.clear()
             found = self.misfit.vectors(wanted)
             memory |= {p.tobytes(): v for p, v in zip(wanted, found, strict=True)}
-        return [self._memory[places.tobytes()] for places in several]
+        return [self._memory[fractions.tobytes()] for fractions in several]
 
     def _sample(self) -> list[Array]:
         """Return the best points of a Latin hypercube, the start among its points."""
@@ -310,7 +310,7 @@ class Search:
         wanted = max(SAMPLES_EACH * size, SAMPLES_LEAST)
         wanted = min(wanted, max(self._evaluations // 4, 1))
         hypercube = qmc.LatinHypercube(size, rng=self._random)
-        points = [self.misfit.start_places(), *hypercube.random(wanted)]
+        points = [self.misfit.start_fractions(), *hypercube.random(wanted)]
         losses = [rms(vector) for vector in self._batches(points)]
         # Refused points are drawn again, as the allowed region is not a box.
         for _ in range(DRAWS):
@@ -329,13 +329,13 @@ class Search:
             found += self._vectors(points[first : first + size])
         return found
 
-    def _descend(self, places: Array, step: float, method: str, most: int) -> None:
+    def _descend(self, fractions: Array, step: float, method: str, most: int) -> None:
         """Run least squares from a point; the misfit keeps the best point on the way."""
         from scipy.optimize import least_squares  # noqa: PLC0415
 
         least_squares(
             lambda at: self._vectors([np.array(at)])[0],
-            np.clip(places, 1e-6, 1 - 1e-6),
+            np.clip(fractions, 1e-6, 1 - 1e-6),
             jac=lambda at: self._jacobian(np.array(at), step),
             bounds=(0.0, 1.0),
             method=method,
@@ -344,20 +344,20 @@ class Search:
             xtol=1e-5,
             # As good as the decomposition of J, which many threads of BLAS slow down. It searches
             # a plane, so it needs two parameters.
-            tr_solver="lsmr" if places.size > 1 else "exact",
+            tr_solver="lsmr" if fractions.size > 1 else "exact",
         )
 
-    def _jacobian(self, places: Array, step: float) -> Array:
+    def _jacobian(self, fractions: Array, step: float) -> Array:
         """Return finite differences in a direction that stays in bounds and is not refused."""
-        size = places.size
-        steps = np.where(places + step <= 1.0, step, -step)
-        moved = [places + steps[i] * np.eye(size)[i] for i in range(size)]
-        base, *vectors = self._vectors([places, *moved])
+        size = fractions.size
+        steps = np.where(fractions + step <= 1.0, step, -step)
+        moved = [fractions + steps[i] * np.eye(size)[i] for i in range(size)]
+        base, *vectors = self._vectors([fractions, *moved])
         jacobian = np.empty((base.size, size))
         for i in range(size):
             if refused(vectors[i]):
                 steps[i] *= -1.0
-                other = places + steps[i] * np.eye(size)[i]
+                other = fractions + steps[i] * np.eye(size)[i]
                 vectors[i] = self._vectors([other])[0] if 0 <= other[i] <= 1 else base
             jacobian[:, i] = 0.0 if refused(vectors[i]) else (vectors[i] - base) / steps[i]
         return jacobian

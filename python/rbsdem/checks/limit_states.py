@@ -503,7 +503,7 @@ class Hinge:
 def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     """Return the response of a hinge; see `Result.hinge`."""
     joint = _arguments.integer(joint, "joint")
-    at = result.column.place_of(joint)
+    at = result.column.index_of(joint)
     if length is not None:
         length = _arguments.number(length, "hinge: length", above=0, unit="m")
     else:

@@ -155,24 +155,24 @@ class Parameter:
         """Whether the parameter is searched on a logarithmic scale."""
         return self.low > 0
 
-    def place(self, value: float) -> float:
-        """Return the place of a value between the bounds, from 0 to 1."""
+    def fraction(self, value: float) -> float:
+        """Return the fraction of the bounds at which a value is, from 0 to 1."""
         if self.logarithmic:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
 
-    def at(self, place: float) -> float:
-        """Return the value at a place from 0 to 1 between the bounds."""
-        if place <= 0 or place >= 1:
-            return self.low if place <= 0 else self.high
+    def at(self, fraction: float) -> float:
+        """Return the value at a fraction of the bounds."""
+        if fraction <= 0 or fraction >= 1:
+            return self.low if fraction <= 0 else self.high
         if self.logarithmic:
-            value = self.low * math.pow(self.high / self.low, place)
+            value = self.low * math.pow(self.high / self.low, fraction)
         else:
-            value = self.low + place * (self.high - self.low)
+            value = self.low + fraction * (self.high - self.low)
         return min(max(value, self.low), self.high)
 
-    def per_place(self, value: float) -> float:
-        """Return the derivative of the value with respect to its place [unit]."""
+    def per_fraction(self, value: float) -> float:
+        """Return the derivative of the value with respect to its fraction [unit]."""
         if self.logarithmic:
             return value * math.log(self.high / self.low)
         return self.high - self.low
@@ -420,7 +420,7 @@ class Column:
         """Whether the column has viscous damping."""
         return isinstance(self.damping, Damping) and self.damping.acts
 
-    def place_of(self, joint: int) -> int:
+    def index_of(self, joint: int) -> int:
         """Return the column of a joint in the arrays of a result.
 
         Parameters

@@ -764,7 +764,7 @@ class Frame:
         cells = {"C": dict(self.columns or {}), "B": dict(self.beams or {})}  # type: ignore[arg-type]
         own = {member.name: member for member in self.members}
         for name in members:
-            place_of(name, self.parts.members, "member")
+            index_of(name, self.parts.members, "member")
             if own.pop(name, None) is None:
                 letter, line, storey = name.split("-")
                 cells[letter].pop((int(line), int(storey)), None)
@@ -922,7 +922,7 @@ def checked_structure(structure: object, who: str = "") -> Structure:
     return structure if isinstance(structure, Frame) else checked_column(structure, who)
 
 
-def place_of(name: str, names: tuple[str, ...], what: str) -> int:
+def index_of(name: str, names: tuple[str, ...], what: str) -> int:
     """Return the number of a node or member, from 0."""
     if name not in names:
         import difflib  # noqa: PLC0415

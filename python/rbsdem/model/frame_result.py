@@ -14,7 +14,7 @@ from rbsdem._files import data_frame, text_table
 from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, parabola, place_of
+from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, index_of, parabola
 from rbsdem.model.rows import LimitState, LimitStates, Rows
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
@@ -345,7 +345,7 @@ class FrameResult(Rows):
 
     def node(self, name: str) -> Array:
         """Return displacement along x and upward [m] and rotation [rad] of a node, (rows, 3)."""
-        at = place_of(name, self.frame.parts.nodes, "node")
+        at = index_of(name, self.frame.parts.nodes, "node")
         return np.column_stack((self.x[:, at], self.y[:, at], self.node_rotation[:, at]))
 
     def member(self, name: str) -> MemberHistory:
@@ -362,7 +362,7 @@ class FrameResult(Rows):
             If there is no such member; the message names the nearest.
         """
         parts = self.frame.parts
-        at = place_of(name, parts.members, "member")
+        at = index_of(name, parts.members, "member")
         springs, deformation, force, ductility = [], [], [], []
         for spring, values, forces in self._springs():
             if spring.member != name or spring.group == "panel":

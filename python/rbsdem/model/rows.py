@@ -829,7 +829,7 @@ class Response(Rows):
         InputError
             If the joint has no layers, or the openings were not kept.
         """
-        at = self.column.place_of(joint)
+        at = self.column.index_of(joint)
         spring = self.column.joints("flexure")[at]
         if not isinstance(spring, Layered):
             raise InputError(f"joint {joint} has no layers; its spring is {type(spring).__name__}")
@@ -865,7 +865,7 @@ class Response(Rows):
                 f"joint {joint} was not made from a section, and over which lengths its layers "
                 "deform is not known; give gauge=rbsdem.springs.Gauge(part=..., length=...)"
             )
-        spring = self.column.joints("flexure")[self.column.place_of(joint)]
+        spring = self.column.joints("flexure")[self.column.index_of(joint)]
         assert isinstance(spring, Layered)
         return strains_of(joint, self.time, [y for y, _ in spring.layers], known, deformation)
 
