@@ -58,16 +58,16 @@ contains
       if (present(ok)) ok = passed
    end subroutine check_finite
 
-   !> The word must be one of the valid ones; returns its place among them, 0 if it is not one of them.
-   subroutine check_name(word, valid, name, messages, place)
+   !> The word must be one of the valid ones; returns its number among them, 0 if it is not one of them.
+   subroutine check_name(word, valid, name, messages, number)
       character(len=*), intent(in) :: word, valid(:), name
       type(message_list), intent(inout) :: messages
-      integer, intent(out) :: place
+      integer, intent(out) :: number
 
-      do place = 1, size(valid)
-         if (word == valid(place)) return
+      do number = 1, size(valid)
+         if (word == valid(number)) return
       end do
-      place = 0
+      number = 0
       if (word == '') then
          call messages%add(name//' is missing; it is one of '//list_of(valid))
       else

@@ -10,7 +10,7 @@ module rbs_base_key_visitor
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, bound_type, check_number, find_key, choice_place, choice_name, &
+   use rbs_base_keys, only: key_type, bound_type, check_number, find_key, choice_number, choice_name, &
                             choice_list, real_kind, integer_kind, logical_kind, word_kind, text_kind, &
                             key_length
    use rbs_base_kinds, only: wp
@@ -379,7 +379,7 @@ contains
       case (checking)
          ! Other texts may not be allocated.
          if (key%kind /= word_kind) return
-         if (text == '' .or. choice_place(key, text) > 0) return
+         if (text == '' .or. choice_number(key, text) > 0) return
          self%sound = .false.
          name = [(choice_name(key, i), i=1, size(name))]
          call self%messages%add(self%group//': '//trim(key%name)//" = '"//text//"' is not known; it is "// &

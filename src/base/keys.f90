@@ -13,7 +13,7 @@ module rbs_base_keys
    implicit none
    private
 
-   public :: key_type, bound_type, check_number, bound_text, find_key, choice_place, choice_name, &
+   public :: key_type, bound_type, check_number, bound_text, find_key, choice_number, choice_name, &
              choice_list
 
    !> Kinds of values: real number, whole number, logical, word out of a list of choices, free text.
@@ -159,45 +159,45 @@ contains
    end function bound_text
 
    !> Place of a key in a list, 0 if it is not there.
-   pure integer function find_key(keys, name) result(place)
+   pure integer function find_key(keys, name) result(number)
       type(key_type), intent(in) :: keys(:)
       character(len=*), intent(in) :: name
 
-      do place = 1, size(keys)
-         if (keys(place)%name == name) return
+      do number = 1, size(keys)
+         if (keys(number)%name == name) return
       end do
-      place = 0
+      number = 0
    end function find_key
 
    !> Place of a word among the choices of a key, 0 if it is not one of them.
-   pure integer function choice_place(key, word) result(place)
+   pure integer function choice_number(key, word) result(number)
       type(key_type), intent(in) :: key
       character(len=*), intent(in) :: word
       character(len=choice_length) :: name
 
-      place = 0
+      number = 0
       do
-         name = choice_name(key, place + 1)
+         name = choice_name(key, number + 1)
          if (name == '') exit
-         place = place + 1
+         number = number + 1
          if (name == word) return
       end do
-      place = 0
-   end function choice_place
+      number = 0
+   end function choice_number
 
-   !> The choice at a place; blank beyond the last one.
-   pure character(len=choice_length) function choice_name(key, place) result(name)
+   !> The choice of a number; blank beyond the last one.
+   pure character(len=choice_length) function choice_name(key, number) result(name)
       type(key_type), intent(in) :: key
-      integer, intent(in) :: place
+      integer, intent(in) :: number
       integer :: i, first, last
 
       name = ''
       first = 1
-      do i = 1, place
+      do i = 1, number
          if (first > len(key%choices)) return
          last = index(key%choices(first:), ' ')
          if (last <= 1) return
-         if (i == place) name = key%choices(first:first + last - 2)
+         if (i == number) name = key%choices(first:first + last - 2)
          first = first + last
       end do
    end function choice_name

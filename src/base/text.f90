@@ -51,13 +51,13 @@ contains
    pure function integer_to_text(i) result(text)
       integer, intent(in) :: i
       character(len=integer_length(i)) :: text
-      integer :: left, place
+      integer :: left, digit
 
       ! Without formatted output, which is slow: every key of an input has a location with a line number.
       left = i
       if (i < 0) text(1:1) = '-'
-      do place = len(text), merge(2, 1, i < 0), -1
-         text(place:place) = achar(iachar('0') + abs(mod(left, 10)))
+      do digit = len(text), merge(2, 1, i < 0), -1
+         text(digit:digit) = achar(iachar('0') + abs(mod(left, 10)))
          left = left/10
       end do
    end function integer_to_text
@@ -218,33 +218,33 @@ contains
       character(len=*), intent(in) :: word, names(:)
       character(len=suggestion_length(word, names)) :: text
 
-      if (len(text) > 0) text = "; did you mean '"//trim(names(nearest_place(word, names)))//"'?"
+      if (len(text) > 0) text = "; did you mean '"//trim(names(nearest_name(word, names)))//"'?"
    end function suggestion
 
    pure integer function suggestion_length(word, names) result(length)
       character(len=*), intent(in) :: word, names(:)
-      integer :: place
+      integer :: number
 
-      place = nearest_place(word, names)
+      number = nearest_name(word, names)
       length = 0
-      if (place > 0) length = len_trim(names(place)) + len("; did you mean ''?")
+      if (number > 0) length = len_trim(names(number)) + len("; did you mean ''?")
    end function suggestion_length
 
-   !> Place of the name that is nearest to a word; 0 if a third of the word or more is other.
-   pure integer function nearest_place(word, names) result(place)
+   !> Number of the name that is nearest to a word; 0 if a third of the word or more is other.
+   pure integer function nearest_name(word, names) result(number)
       character(len=*), intent(in) :: word, names(:)
       integer :: i, distance, least
 
-      place = 0
+      number = 0
       least = (len_trim(word) + 1)/3 + 1
       do i = 1, size(names)
          distance = edit_distance(lower(trim(word)), lower(trim(names(i))))
          if (distance < least) then
             least = distance
-            place = i
+            number = i
          end if
       end do
-   end function nearest_place
+   end function nearest_name
 
    !> Levenshtein distance: the least number of characters to insert, remove or change.
    pure integer function edit_distance(a, b) result(distance)

@@ -219,7 +219,7 @@ contains
 
    !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
    !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
-   !> under dead load; for the springs place in the clear length and initial stiffness; the mass along x.
+   !> under dead load; for the springs positions in the clear length and initial stiffness; the mass along x.
    subroutine list_parts(frame, answer)
       type(frame_type), intent(in) :: frame
       type(answer_type), intent(inout) :: answer
@@ -227,7 +227,7 @@ contains
       character(len=12), parameter :: kinds(3) = ['shear       ', 'flexure     ', 'axial_spring']
       character(len=12) :: group
       type(text_buffer) :: text
-      real(c_double), allocatable :: place(:), stiffness(:)
+      real(c_double), allocatable :: position(:), stiffness(:)
       real(c_double) :: of_joint(2)
       integer :: i, first, last
 
@@ -239,7 +239,7 @@ contains
          call text%append(trim(frame%member_name(i))//tab)
       end do
       call text%append(line)
-      allocate (place(0), stiffness(0))
+      allocate (position(0), stiffness(0))
       do i = 1, frame%member_springs
          if (frame%location(i)%kind /= layer) then
             group = kinds(frame%location(i)%kind)
@@ -262,7 +262,7 @@ contains
       answer%text = text%text(:text%length)//line
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
                       (real(frame%element(i)%node, c_double), i=1, frame%members), &
-                      frame%element(:frame%members)%compression, place, stiffness, &
+                      frame%element(:frame%members)%compression, position, stiffness, &
                       -sum(frame%pattern(horizontal)%force)]
 
    contains
@@ -272,7 +272,7 @@ contains
          real(c_double), intent(in) :: k
 
          call text%append(trim(frame%location(i)%owner)//' '//trim(kind)//' '//trim(rule)//tab)
-         place = [place, frame%position_ratio(i)]
+         position = [position, frame%position_ratio(i)]
          stiffness = [stiffness, k]
       end subroutine add_spring
    end subroutine list_parts

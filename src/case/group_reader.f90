@@ -3,7 +3,7 @@
 module rbs_case_group_reader
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_place, word_kind, &
+   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_number, word_kind, &
                             force, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, lower, suggestion, list_of
@@ -80,30 +80,30 @@ contains
       character(len=*), intent(in) :: where
       type(message_list), intent(inout) :: messages
       logical, intent(out) :: ok
-      integer :: i, place, known
+      integer :: i, group_index, known
 
       known = messages%count
       self%group = group
       self%where = where
       if (self%of_section) then
-         place = findloc(section_groups == group, .true., dim=1)
+         group_index = findloc(section_groups == group, .true., dim=1)
       else
-         place = findloc(group_names == group, .true., dim=1)
+         group_index = findloc(group_names == group, .true., dim=1)
       end if
-      if (place == 0) then
+      if (group_index == 0) then
          call messages%add_at(where, 'the group &'//trim(group)//' is not known; it is one of '// &
                               list_of(group_names)//suggestion(group, group_names))
       else if (group == 'loading' .and. self%case%loadings == most_loadings) then
          call messages%add_at(where, '&loading appears more than '//to_text(most_loadings)//' times')
-      else if (group == 'drawing' .and. self%seen(place)) then
+      else if (group == 'drawing' .and. self%seen(group_index)) then
          ! Each drawing of a frame has groups of its own.
          do i = 1, size(group_names)
-            if (any(drawing_groups == group_names(i))) self%seen(i) = i == place
+            if (any(drawing_groups == group_names(i))) self%seen(i) = i == group_index
          end do
-      else if (self%seen(place) .and. all(repeated /= group)) then
+      else if (self%seen(group_index) .and. all(repeated /= group)) then
          call messages%add_at(where, '&'//trim(group)//' appears twice; it may appear once')
       else
-         self%seen(place) = .true.
+         self%seen(group_index) = .true.
       end if
       ok = messages%count == known
       if (.not. ok) return
@@ -154,27 +154,27 @@ contains
 
    !> Place of a key of the open group; 0 with a message if the group does not have it. The rule of a
    !> spring and the shape of a section must be set before the keys that they bring.
-   subroutine find(self, name, where, place, messages)
+   subroutine find(self, name, where, key_index, messages)
       class(group_reader), intent(in) :: self
       character(len=*), intent(in) :: name
       !> For messages, may be blank
       character(len=*), intent(in) :: where
-      integer, intent(out) :: place
+      integer, intent(out) :: key_index
       type(message_list), intent(inout) :: messages
       type(key_type), allocatable :: others(:)
       character(len=len(self%keys%name)) :: names(size(self%keys))
       character(len=:), allocatable :: remedy
       integer :: i
 
-      place = find_key(self%keys, name)
-      if (place > 0) return
+      key_index = find_key(self%keys, name)
+      if (key_index > 0) return
       do i = 1, merge(size(rule_names), 0, self%is_spring() .and. self%group /= 'layers')
          call keys_of(rule_names(i), others)
          if (find_key(others, name) == 0) cycle
          associate (rule => self%entries%entry(self%entries%count)%spring%rule)
-            place = ignored
+            key_index = ignored
             if (all(rule_names /= rule)) return
-            place = 0
+            key_index = 0
             call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)//' is not used by the '// &
                                  'rule '//trim(rule)//'; remove it or choose another rule')
             return
@@ -186,36 +186,36 @@ contains
       call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'"//remedy)
    end subroutine find
 
-   !> Set the key at a place to numbers, whole numbers, or 0 and 1.
-   subroutine put_numbers(self, place, number)
+   !> Set a key by its index to numbers, whole numbers, or 0 and 1.
+   subroutine put_numbers(self, key_index, number)
       class(group_reader), intent(inout) :: self
       !> From `find`
-      integer, intent(in) :: place
+      integer, intent(in) :: key_index
       real(wp), intent(in), contiguous, target :: number(:)
       real(wp), allocatable, target :: si(:)
       integer :: parameter
 
-      if (place == ignored) return
+      if (key_index == ignored) return
       ! The last keys of a spring are the parameters of its rule.
-      parameter = place - size(self%keys)
+      parameter = key_index - size(self%keys)
       if (self%is_spring()) parameter = parameter + size(self%rule_keys)
       if (self%units%is_si()) then
          if (parameter > 0) then
             self%entries%entry(self%entries%count)%spring%value(parameter) = number(1)
             return
          end if
-         call self%visitor%put(self%keys(place)%name, number=number)
+         call self%visitor%put(self%keys(key_index)%name, number=number)
       else
-         si = self%units%into_si(number, unit_in_group(self%keys(place)%unit, self%group))
-         call self%visitor%put(self%keys(place)%name, number=si)
+         si = self%units%into_si(number, unit_in_group(self%keys(key_index)%unit, self%group))
+         call self%visitor%put(self%keys(key_index)%name, number=si)
       end if
       call self%visit_open()
    end subroutine put_numbers
 
-   !> Set the key at a place to a word or a text.
-   subroutine put_text(self, place, given, messages)
+   !> Set a key by its index to a word or a text.
+   subroutine put_text(self, key_index, given, messages)
       class(group_reader), intent(inout) :: self
-      integer, intent(in) :: place
+      integer, intent(in) :: key_index
       !> A word may be in upper or lower case
       character(len=*), intent(in) :: given
       type(message_list), intent(inout) :: messages
@@ -223,8 +223,8 @@ contains
       character(len=:), allocatable :: text
       integer :: i
 
-      if (place == ignored) return
-      key = self%keys(place)
+      if (key_index == ignored) return
+      key = self%keys(key_index)
       text = given
       if (key%kind == word_kind) then
          ! As the key lists it
@@ -241,8 +241,8 @@ contains
          call self%collect_keys()
          return
       else if (self%is_spring() .and. key%kind == word_kind) then
-         if (choice_place(key, text) > 0) then
-            call self%put_numbers(place, [real(choice_place(key, text), wp)])
+         if (choice_number(key, text) > 0) then
+            call self%put_numbers(key_index, [real(choice_number(key, text), wp)])
          else
             call messages%add_at(self%where, trim(self%group)//' spring: '//trim(key%name)//" = '"// &
                                  trim(text)//"' is not known; it is one of "//trim(choice_list(key)))

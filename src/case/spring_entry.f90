@@ -20,8 +20,8 @@ module rbs_case_spring_entry
    !> Most layers of a joint.
    integer, parameter :: most_layers = 10000
 
-   !> Most places of a spring in a member.
-   integer, parameter :: most_places = 20
+   !> Most positions of a spring in a member.
+   integer, parameter :: most_positions = 20
 
    !> The groups that give springs.
    character(len=16), parameter, public :: spring_groups(5) = [character(len=16) :: &
@@ -100,8 +100,8 @@ contains
       end if
       if (self%group /= 'layer_spring') then
          call v%word('kind', self%kind, 'frame: the kind of members that has the spring')
-         call v%key('place', self%place, '', not_negative, 'frame: where in a member, in shares of its '// &
-                    'clear length; without it flexure at both ends', most_places)
+         call v%key('position', self%position, '', not_negative, 'frame: where in a member, in shares of '// &
+                    'its clear length; without it flexure at both ends', most_positions)
       end if
       if (self%group /= 'layer_spring' .and. self%group /= 'layers') then
          call v%word('node', self%node, "frame: node that it holds to the ground, or 'base'")
@@ -145,7 +145,7 @@ contains
          associate (entry => list%entry(i))
             if (allocated(entry%joint)) then
                call messages%add_at(entry%where, '&'//trim(entry%group)//' has joint, but joints of a '// &
-                                    'frame belong to its members; give kind and place')
+                                    'frame belong to its members; give kind and position')
             end if
             if (entry%group == 'layers' .and. messages%count == known) then
                do j = 1, list%count
@@ -154,7 +154,7 @@ contains
                end do
                if (j > list%count) then
                   call messages%add_at(entry%where, '&layers belong to no &flexure with rule = '// &
-                                       "'layered' and the same kind and place; give it these, or remove "// &
+                                       "'layered' and the same kind and position; give it these, or remove "// &
                                        'the layers')
                end if
             end if
@@ -162,7 +162,7 @@ contains
             n = n + 1
             spring(n) = entry%frame_spring
             if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle
-            ! The layers of its kind of members and its places
+            ! The layers of its kind of members and its positions
             do j = list%count, 1, -1
                if (list%entry(j)%group == 'layers' .and. are_of(list%entry(j), entry)) exit
             end do
@@ -176,10 +176,10 @@ contains
    pure logical function are_of(layers, spring)
       type(spring_entry), intent(in) :: layers, spring
 
-      are_of = layers%kind == spring%kind .and. (allocated(layers%place) .eqv. allocated(spring%place))
-      if (.not. are_of .or. .not. allocated(layers%place)) return
-      are_of = size(layers%place) == size(spring%place)
-      if (are_of) are_of = .not. any(abs(layers%place - spring%place) > 0.0_wp)
+      are_of = layers%kind == spring%kind .and. (allocated(layers%position) .eqv. allocated(spring%position))
+      if (.not. are_of .or. .not. allocated(layers%position)) return
+      are_of = size(layers%position) == size(spring%position)
+      if (are_of) are_of = .not. any(abs(layers%position - spring%position) > 0.0_wp)
    end function are_of
 
    !> Give the springs to the joints of a column.
@@ -316,8 +316,8 @@ contains
          do i = 1, list%count
             associate (entry => list%entry(i))
                if (entry%kind == '' .and. entry%node == '' .and. entry%panel == '' .and. &
-                   .not. allocated(entry%place)) cycle
-               call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place, node and panel '// &
+                   .not. allocated(entry%position)) cycle
+               call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, position, node and panel '// &
                                     'belong to springs of a frame; give joint, or a group &frame')
             end associate
          end do

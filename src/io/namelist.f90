@@ -100,21 +100,21 @@ contains
          integer, intent(in) :: i
          character(len=:), allocatable :: text
          real(wp), allocatable :: number(:)
-         integer :: place, known
+         integer :: key_index, known
 
          known = messages%count
-         call reader%find(scanned%entry(i)%name, scanned%location(scanned%entry(i)%line), place, messages)
-         if (messages%count > known .or. place == ignored) return
+         call reader%find(scanned%entry(i)%name, scanned%location(scanned%entry(i)%line), key_index, messages)
+         if (messages%count > known .or. key_index == ignored) return
          call check_twice(group, i)
-         call read_values(scanned%entry(i), reader%keys(place), number, text)
+         call read_values(scanned%entry(i), reader%keys(key_index), number, text)
          if (messages%count > known) return
-         if (is_text(reader%keys(place))) then
-            call reader%put_text(place, text, messages)
+         if (is_text(reader%keys(key_index))) then
+            call reader%put_text(key_index, text, messages)
             return
          end if
          ! All subscripted values of a name are put together when the first of them is read.
-         if (scanned%entry(i)%subscript > 0) call gather(group, i, reader%keys(place), number)
-         if (allocated(number)) call reader%put_numbers(place, number)
+         if (scanned%entry(i)%subscript > 0) call gather(group, i, reader%keys(key_index), number)
+         if (allocated(number)) call reader%put_numbers(key_index, number)
       end subroutine put_entry
 
       !> A name (with its subscript) must not appear twice in a group.
@@ -143,18 +143,18 @@ contains
          !> The values; for a word or a text the first one without its quotes
          real(wp), allocatable, intent(out) :: number(:)
          character(len=:), allocatable, intent(out) :: text
-         character(len=:), allocatable :: place, what
+         character(len=:), allocatable :: location, what
          real(wp) :: value
          integer :: i, times, total
 
-         place = scanned%location(entry%line)//' '
+         location = scanned%location(entry%line)//' '
          allocate (number(min(entry%total, key%most)))
          total = 0
          do i = entry%first, entry%last
             associate (word => scanned%text(scanned%word(i)%first:scanned%word(i)%last))
                call read_value(word, key%kind, value, what)
                if (allocated(what)) then
-                  call messages%add(place//trim(entry%name)//' = '//word(:min(len(word), 40))//' '//what)
+                  call messages%add(location//trim(entry%name)//' = '//word(:min(len(word), 40))//' '//what)
                   return
                end if
                if (i == entry%first .and. is_text(key)) call unquote(word, text)
@@ -165,12 +165,12 @@ contains
          end do
          total = min(entry%total, huge(1) - entry%subscript) + max(entry%subscript - 1, 0)
          if (entry%subscript > 0 .and. key%most == 1) then
-            call messages%add(place//"'"//trim(entry%name)//"' takes no subscript")
+            call messages%add(location//"'"//trim(entry%name)//"' takes no subscript")
          else if (entry%subscript > 0 .and. total > entry%subscript) then
-            call messages%add(place//"'"//trim(entry%name)//'('//to_text(entry%subscript)//")' takes one "// &
+            call messages%add(location//"'"//trim(entry%name)//'('//to_text(entry%subscript)//")' takes one "// &
                               'value, not '//to_text(entry%total)//'; give a list without subscript')
          else if (total > key%most) then
-            call messages%add(place//"'"//trim(entry%name)//"' has "//to_text(total)// &
+            call messages%add(location//"'"//trim(entry%name)//"' has "//to_text(total)// &
                               ' values; it takes '//to_text(key%most)//' at the most')
          end if
       end subroutine read_values

@@ -194,7 +194,7 @@ def test_each_spring_follows_its_rule(rng: Rng) -> float:
         if kind is None:
             alone = made.panel
         elif kind.yield_moment is None:
-            alone = kind.at("flexure", own.place)
+            alone = kind.at("flexure", own.position)
         else:
             d_y = kind.yield_moment / own.stiffness
             alone = Bilinear(own.stiffness, d_y, kind.hardening * own.stiffness)
@@ -263,7 +263,7 @@ def sections_off(run: FrameResult) -> float:
         if own.group == "panel":
             continue
         at = parts.members.index(own.member)
-        m, share = Geometry(made, at), own.place
+        m, share = Geometry(made, at), own.position
         line = -(1 - share) * run.moment_from[:, at] + share * run.moment_to[:, at]
         line -= m.load * m.clear**2 * share * (1 - share) / 2
         worst = max(worst, float(np.abs(run.springs["moment"][:, i] - line).max()))
@@ -288,7 +288,7 @@ def gaps(run: FrameResult) -> float:
             if own.group == "panel":
                 turned[:, 1, parts.nodes.index(own.member)] -= values
             else:
-                hinges[own.member].append((channel, own.place, values))
+                hinges[own.member].append((channel, own.position, values))
     worst, size = 0.0, float(np.abs(run.x).max() + 1e-12)
     for at, name in enumerate(parts.members):
         m, own = Geometry(made, at), made.kinds[name]

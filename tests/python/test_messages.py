@@ -90,7 +90,7 @@ FRAMED = """\
 &floor mass = 4e4, load = 2e4 /
 &member_kind name = 'C', modulus = 3e10, area = 0.16, inertia = 2e-3, yield_moment = 2.5e5 /
 &member_kind name = 'B', modulus = 3e10, area = 0.15, inertia = 2e-3, interior = 'rigid' /
-&flexure kind = 'B', place = 0, 0.5, 1, rule = 'bilinear', k = 6e7, d_y = 4e-3, k_post = 1e5 /
+&flexure kind = 'B', position = 0, 0.5, 1, rule = 'bilinear', k = 6e7, d_y = 4e-3, k_post = 1e5 /
 &column_of kind = 'C', rigid_end = 0.3 /
 &beam_of kind = 'B' /
 &node name = 'A', x = 14.0, y = 3.2, support = 'roller' /
@@ -364,7 +364,7 @@ KEYWORDS: dict[str, Callable[..., object]] = {
 IN_FILES = {"footing_mass", "footing_inertia", "footing_height", "duration", "period", "interval"}
 IN_FILES |= {"reference", "largest", "strips", "scale", "time", "values"}
 #: Keys whose refusals name what they refer to, and stand in `messages.txt`.
-REFERENCES = {"joint", "id", "spring", "steel", "between_steel", "y", "place"}
+REFERENCES = {"joint", "id", "spring", "steel", "between_steel", "y", "position"}
 OF_OTHER_KINDS = {
     "real": ("'1.6'", "must be a number without quotes"),
     "integer": ("1.5", "must be a whole number"),

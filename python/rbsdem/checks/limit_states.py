@@ -121,7 +121,7 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
             if group == "flexure":
                 found += _of_joints(column, springs, len(single))
             for number, own in enumerate(single, 1):
-                where = f"the {group} spring of {own.member} at {own.place:g} of its length"
+                where = f"the {group} spring of {own.member} at {own.position:g} of its length"
                 if own.group == "panel":
                     where = f"the panel of node {own.member}"
                 marks = column.landmarks[own]
@@ -145,7 +145,7 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
     for own in springs:
         if own.rule != "layered":
             continue
-        made = frame.kinds[own.member].at(own.group, own.place)
+        made = frame.kinds[own.member].at(own.group, own.position)
         assert isinstance(made, Layered)
         places: dict[Spring, list[float]] = {}
         for y, layer in made.layers:

@@ -49,11 +49,11 @@ class FrameMember:
         Shear modulus times shear area [N]; 0: no deformation by shear.
     flexure : Spring, sequence of two, or mapping, optional
         Rotational springs in place of `yield_moment`: one for both ends, one for each end, or a
-        mapping from places in shares of the clear length to springs. Joints of layers
+        mapping from positions in shares of the clear length to springs. Joints of layers
         (`Layered`) take part in the axial force of the member; y is positive on the left of the
         way from its start to its end, above in a beam of a grid.
     shear : Spring or mapping, optional
-        Springs that slip, one or by their places.
+        Springs that slip, one or by their positions.
     axial_spring : Spring, optional
         A spring that opens.
     interior : {"elastic", "rigid"}, optional
@@ -107,7 +107,7 @@ class FrameMember:
             rigid = _arguments.number(rigid, "FrameMember: rigid_end")
         object.__setattr__(self, "rigid_end", rigid)
         for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
-            object.__setattr__(self, name, _placed(getattr(self, name), name, usual))
+            object.__setattr__(self, name, _by_position(getattr(self, name), name, usual))
 
     @classmethod
     def rigid(cls, **more: Any) -> FrameMember:
@@ -125,10 +125,12 @@ class FrameMember:
             return {}
         return {"modulus": self.modulus, "area": self.area, "inertia": self.inertia}
 
-    def at(self, group: str, place: float) -> Spring | None:
-        """Return the spring of a group that was given at a place, None without one."""
+    def at(self, group: str, position: float) -> Spring | None:
+        """Return the spring of a group that was given at a position, None without one."""
         own = (
-            self.axial_spring if group == "axial_spring" else dict(self._springs(group)).get(place)
+            self.axial_spring
+            if group == "axial_spring"
+            else dict(self._springs(group)).get(position)
         )
         return own
 
@@ -153,31 +155,31 @@ class FrameMember:
             },
         )
         for group in ("flexure", "shear"):
-            places: dict[Spring, list[float]] = {}
-            for place, spring in self._springs(group):
-                places.setdefault(spring, []).append(place)
-            for spring, where in places.items():
-                yield spring.statement(group, kind=_core.Text(name), place=where)
+            positions: dict[Spring, list[float]] = {}
+            for position, spring in self._springs(group):
+                positions.setdefault(spring, []).append(position)
+            for spring, where in positions.items():
+                yield spring.statement(group, kind=_core.Text(name), position=where)
                 if isinstance(spring, Layered):
-                    yield spring.layers_statement(layers, kind=_core.Text(name), place=where)
+                    yield spring.layers_statement(layers, kind=_core.Text(name), position=where)
         if self.axial_spring is not None:
             yield self.axial_spring.statement("axial_spring", kind=_core.Text(name))
 
 
-def _placed(
+def _by_position(
     given: Any, name: str, usual: tuple[float, ...]
 ) -> tuple[tuple[float, Spring], ...] | None:
-    """Return springs by their places, from one, one for each usual place, or a mapping."""
+    """Return springs by their positions, from one, one for each usual position, or a mapping."""
     springs: Any = given
     if given is None:
         return None
     if isinstance(given, Mapping):
         springs = [
-            (_arguments.number(place, f"FrameMember: {name}"), spring)
-            for place, spring in given.items()
+            (_arguments.number(position, f"FrameMember: {name}"), spring)
+            for position, spring in given.items()
         ]
     elif isinstance(given, Spring):
-        springs = [(place, given) for place in usual]
+        springs = [(position, given) for position in usual]
     else:
         springs = _arguments.several(given, f"FrameMember: {name}", "springs")
         if len(springs) == len(usual) and all(isinstance(one, Spring) for one in springs):
@@ -186,7 +188,7 @@ def _placed(
         if not (isinstance(item, tuple) and len(item) == 2 and isinstance(item[1], Spring)):
             raise InputError(
                 f"FrameMember: {name} = {_arguments.shown(given)} must be a spring, "
-                "one for each end, or a mapping from places (0 to 1) to springs"
+                "one for each end, or a mapping from positions (0 to 1) to springs"
             )
     return tuple(sorted(springs, key=lambda item: item[0]))
 
@@ -311,7 +313,7 @@ class FrameSpring(NamedTuple):
     member, group, rule : str
         Name of the member, or of the node; "flexure", "shear" or "axial_spring", or "panel"; name
         of its rule.
-    place : float
+    position : float
         In shares of the clear length of the member; 0 in a panel.
     stiffness : float
         The initial one [N m/rad or N/m].
@@ -320,7 +322,7 @@ class FrameSpring(NamedTuple):
     member: str
     group: str
     rule: str
-    place: float
+    position: float
     stiffness: float
 
 
@@ -420,7 +422,7 @@ class MemberGeometry:
         """Return moments along the clear length, positive with tension on the side of `normal`.
 
         `first` and `last` are the moments of its ends, clockwise on the member [N m]; `shares` are
-        places from 0 to 1.
+        positions from 0 to 1.
         """
         one, two = np.asarray(first, float), np.asarray(last, float)
         return parabola(one, two, self.hung, np.asarray(shares, float))
@@ -609,7 +611,7 @@ class Frame:
         lines = answer.text.split("\n")[:3]
         nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in lines)
         n, m, s = len(nodes), len(members), len(springs)
-        x, y, floor, ends, compression, place, stiffness, mass = np.split(
+        x, y, floor, ends, compression, position, stiffness, mass = np.split(
             answer.values, np.cumsum([n, n, n, 2 * m, m, s, s])
         )
         return FrameParts(
@@ -622,7 +624,7 @@ class Frame:
             compression,
             tuple(
                 _spring_of(text, float(where), float(k))
-                for text, where, k in zip(springs, place, stiffness, strict=True)
+                for text, where, k in zip(springs, position, stiffness, strict=True)
             ),
             float(mass[0]),
         )
@@ -698,7 +700,7 @@ class Frame:
     @property
     def joint_numbers(self) -> range:
         """Numbers of the springs in members, from 1, as limit states know them, layers last."""
-        made = (self.kinds[own.member].at("flexure", own.place) for own in self._joints())
+        made = (self.kinds[own.member].at("flexure", own.position) for own in self._joints())
         layers = sum(len(one.layers) for one in made if isinstance(one, Layered))
         return range(1, len(self.parts.springs) + layers + 1)
 
@@ -745,7 +747,7 @@ class Frame:
             turned = kind.yield_moment / spring.stiffness
             sides: tuple[Literal[1, -1], ...] = (1, -1)
             return [Landmark("yield", side, turned, "yield_moment") for side in sides]
-        made = None if spring.rule == "layered" else kind.at(spring.group, spring.place)
+        made = None if spring.rule == "layered" else kind.at(spring.group, spring.position)
         return [] if made is None else made.landmarks()
 
     def without(self, *members: str) -> Self:
@@ -822,9 +824,9 @@ class Frame:
 
         Of a drawn cell `drawn` has the keys that name its drawings.
         """
-        places: Any = cells or (self.columns or {}, self.beams or {})
+        grids: Any = cells or (self.columns or {}, self.beams or {})
         drawn = drawn or {}
-        kinds = [one for own in places for one in own.values() if one and one not in drawn]
+        kinds = [one for own in grids for one in own.values() if one and one not in drawn]
         kinds += [member.kind for member in self.members]
         names = _names_of(kinds)
         usual = {"kinematics": "small", "base": "fixed", "pattern": "triangular", "control": "x"}
@@ -848,7 +850,7 @@ class Frame:
             return {"kind": _core.Text(names[_stated(cell)])} | _rigid_lengths(cell.rigid_end)
 
         for group, at, own_cells in zip(
-            ("column_of", "beam_of"), ("line", "bay"), places, strict=True
+            ("column_of", "beam_of"), ("line", "bay"), grids, strict=True
         ):
             for (line, storey), cell in own_cells.items():
                 where = {at: line or None, "storey": storey or None}
@@ -882,9 +884,9 @@ class Frame:
                 yield _core.group("floor", values)
 
 
-def _spring_of(text: str, place: float, stiffness: float) -> FrameSpring:
+def _spring_of(text: str, position: float, stiffness: float) -> FrameSpring:
     member, group, rule = text.rsplit(" ", 2)
-    return FrameSpring(member, group, rule, place, stiffness)
+    return FrameSpring(member, group, rule, position, stiffness)
 
 
 def _is_member(cell: object) -> bool:

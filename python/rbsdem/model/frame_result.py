@@ -396,12 +396,16 @@ class FrameResult(Rows):
         """Return rotations beyond those at the first yield of an end to each side."""
         found = np.zeros_like(turned)
         for spring, values, _ in self._springs():
-            if spring.member != name or spring.group != "flexure" or spring.place not in (0.0, 1.0):
+            if (
+                spring.member != name
+                or spring.group != "flexure"
+                or spring.position not in (0.0, 1.0)
+            ):
                 continue
             points = [(one, self._reached(one, values)) for one in self.frame.landmarks[spring]]
             for point, row in [*points, *self._yields(spring, values)]:
                 if point.name == "yield" and row is not None:
-                    end = int(spring.place)
+                    end = int(spring.position)
                     way = np.sign(turned[row, end])
                     beyond = np.maximum(way * (turned[:, end] - turned[row, end]), 0.0)
                     beyond[:row] = 0.0
@@ -425,7 +429,7 @@ class FrameResult(Rows):
     def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, int | None]]:
         """Return where layers of a joint yield in tension and spall, for each way that it turns."""
         made = (
-            self.frame.kinds[spring.member].at(spring.group, spring.place)
+            self.frame.kinds[spring.member].at(spring.group, spring.position)
             if spring.rule == "layered" and spring.group == "flexure"
             else None
         )
@@ -435,7 +439,7 @@ class FrameResult(Rows):
         at = next(
             i
             for i, one in enumerate(joints)
-            if (one.rule, one.member, one.place) == ("layered", spring.member, spring.place)
+            if (one.rule, one.member, one.position) == ("layered", spring.member, spring.position)
         )
         opening = self.springs["opening"][: rotation.size, at]
         first: dict[tuple[LandmarkName, Literal[1, -1]], int] = {}
@@ -471,7 +475,7 @@ class FrameResult(Rows):
             points = [
                 (point, self._reached(point, values)) for point in self.frame.landmarks[spring]
             ]
-            end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
+            end = {0.0: "start", 1.0: "end"}.get(spring.position, f"{spring.position:g}")
             where = {"member": spring.member, "group": spring.group}
             where["end"] = "" if spring.group == "panel" else end
             found += [
@@ -541,7 +545,7 @@ class FrameResult(Rows):
             return parts.nodes
         groups = [group for group, pair in _CHANNELS.items() if channel in pair]
         springs = parts.springs_of(groups[0]) if groups else []
-        return [f"{one.member}_{one.place:g}" for one in springs] if groups else parts.members
+        return [f"{one.member}_{one.position:g}" for one in springs] if groups else parts.members
 
     def __repr__(self) -> str:
         about = self.summary
@@ -599,7 +603,7 @@ def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
     turned = [
         point.side * point.deformation for point in frame.landmarks[spring] if point.name == "yield"
     ]
-    own = frame.kinds[spring.member].at(spring.group, spring.place)
+    own = frame.kinds[spring.member].at(spring.group, spring.position)
     if not turned:
         return np.inf
     if own is None:

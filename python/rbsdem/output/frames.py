@@ -450,10 +450,10 @@ def spring_rotations(result: FrameResult, row: int | NDArray[np.intp]) -> Spring
     for i, spring in enumerate(structure.parts.springs_of("flexure")):
         if spring.group == "panel":
             found.panels[spring.member] = turned[..., i]
-        elif spring.place in (0.0, 1.0):
+        elif spring.position in (0.0, 1.0):
             elastic = structure.kinds[spring.member].yield_moment is not None
             turn = turned[..., i] - (moments[..., i] / spring.stiffness if elastic else 0.0)
-            found.hinges[spring.member][..., int(spring.place)] = turn
+            found.hinges[spring.member][..., int(spring.position)] = turn
     return found
 
 
@@ -526,13 +526,13 @@ def _draw_hinges(
             points[reached.get((spring.member, "panel", ""), "")].append(here)
             continue
         member = structure.geometry[spring.member]
-        end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
+        end = {0.0: "start", 1.0: "end"}.get(spring.position, f"{spring.position:g}")
         state = reached.get((spring.member, spring.group, end), "")
         # Between the ends only what has been reached: sections there seldom are.
-        if not state and 0.0 < spring.place < 1.0 and spring.group == "flexure":
+        if not state and 0.0 < spring.position < 1.0 and spring.group == "flexure":
             continue
         aside = min(beside / member.clear, 0.3)
-        share = np.array([np.clip(spring.place, aside, 1 - aside)])
+        share = np.array([np.clip(spring.position, aside, 1 - aside)])
         if result is None or turns is None:
             at = member.foot + share * member.clear * member.axis
         else:

@@ -32,7 +32,7 @@ SHAPES: dict[str, type[Section]] = {
 #: Groups of springs.
 SPRING_GROUPS = ("shear", "flexure", "axial_spring")
 #: Keys of the place of a spring.
-_NO_KEYS = ("rule", "joint", "kind", "node", "panel", "place", "id")
+_NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")
 #: Classes of the groups that refer to steels.
 _PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
 
@@ -245,7 +245,7 @@ def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
     for group, usual in (("flexure", [0.0, 1.0]), ("shear", [0.5])):
         for spring in groups.get(group, []):
             if spring.get("kind") == given["name"]:
-                places = _core.several(spring.get("place", usual))
+                places = _core.several(spring.get("position", usual))
                 made = _layered(spring, groups) if spring["rule"] == "layered" else _spring(spring)
                 found.setdefault(group, {}).update(dict.fromkeys(places, made))
     for spring in groups.get("axial_spring", []):
@@ -260,7 +260,7 @@ def _layered(given: dict[str, Any], groups: Groups) -> Layered:
     """Return a joint of layers, whose kind and places are those of its spring."""
 
     def where(group: dict[str, Any]) -> tuple[Any, ...]:
-        return group.get("kind"), *_core.several(group.get("place", []))
+        return group.get("kind"), *_core.several(group.get("position", []))
 
     layers = next(one for one in groups["layers"] if where(one) == where(given))
     return Layered(_layers(layers, _layer_springs(groups)))

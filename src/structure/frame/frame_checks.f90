@@ -102,13 +102,13 @@ contains
                call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
                                  list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
             end if
-            if (s%kind == '' .and. allocated(s%place)) then
-               call messages%add(name//': place is for springs of members; remove it')
-            else if (allocated(s%place)) then
-               within = all(ieee_is_finite(s%place))
-               if (within) within = all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)
+            if (s%kind == '' .and. allocated(s%position)) then
+               call messages%add(name//': position is for springs of members; remove it')
+            else if (allocated(s%position)) then
+               within = all(ieee_is_finite(s%position))
+               if (within) within = all(s%position >= 0.0_wp .and. s%position <= 1.0_wp)
                if (.not. within) then
-                  call messages%add(name//': place is a share of the clear length, from 0 to 1')
+                  call messages%add(name//': position is a share of the clear length, from 0 to 1')
                end if
             end if
          end associate
@@ -139,15 +139,15 @@ contains
             ! A slip turns both ends alike, which no spring at an end does.
             if (s%group == 'shear') most = most + 2.0_wp
             if (s%group == 'shear') cycle
-            if (.not. allocated(s%place)) then
+            if (.not. allocated(s%position)) then
                bending = bending + 2
                least = 0.0_wp
                most = 1.0_wp
             else
-               if (.not. all(ieee_is_finite(s%place))) return
-               bending = bending + size(s%place)
-               least = min(least, minval(s%place))
-               most = max(most, maxval(s%place))
+               if (.not. all(ieee_is_finite(s%position))) return
+               bending = bending + size(s%position)
+               least = min(least, minval(s%position))
+               most = max(most, maxval(s%position))
             end if
          end associate
       end do
@@ -170,7 +170,7 @@ contains
                               "or a shear spring of the rule 'peak_oriented' or 'pinching'")
          else if (kind%interior == 'rigid' .and. .not. (most > least .or. is_rigid(kind, record%spring))) then
             call messages%add(name//": with interior = 'rigid' all bending is in springs; give it two "// &
-                              'flexural springs or more, at different places, or none if it is rigid')
+                              'flexural springs or more, at different positions, or none if it is rigid')
          end if
       end associate
    end subroutine check_kind

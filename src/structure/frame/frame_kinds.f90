@@ -76,9 +76,9 @@ contains
       do group = 1, 3
          do j = 1, size(spring)
             if (spring(j)%kind /= kind%name .or. spring(j)%group /= group_of(group)) cycle
-            if (allocated(spring(j)%place)) then
-               do k = 1, size(spring(j)%place)
-                  call append_spring(m, group, spring(j)%place(k), spring(j)%spring)
+            if (allocated(spring(j)%position)) then
+               do k = 1, size(spring(j)%position)
+                  call append_spring(m, group, spring(j)%position(k), spring(j)%spring)
                end do
             else if (group == flexure) then
                call append_spring(m, flexure, 0.0_wp, spring(j)%spring)

@@ -87,13 +87,13 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_loss
    end type loss_record
 
-   !> A spring of a kind of members, at places in shares of the clear length, from the ground to a node, or
+   !> A spring of a kind of members, at positions in shares of the clear length, from the ground to a node, or
    !> in the panel of a node, between its columns and its beams.
    type :: frame_spring
       !> Group that gives it: 'shear', 'flexure' or 'axial_spring'
       character(len=16) :: group = ''
       character(len=name_length) :: kind = '', node = '', panel = ''
-      real(wp), allocatable :: place(:)
+      real(wp), allocatable :: position(:)
       type(spring_record) :: spring
    end type frame_spring
 
