@@ -154,8 +154,8 @@ contains
                end do
                if (j > list%count) then
                   call messages%add_at(entry%where, '&layers belong to no &flexure with rule = '// &
-                                       "'layered' and the same kind and position; give it these, or remove "// &
-                                       'the layers')
+                                       "'layered' and the same kind and position; give it these, or "// &
+                                       'remove the layers')
                end if
             end if
             if (any(entry%group == spring_groups(4:))) cycle
@@ -317,8 +317,8 @@ contains
             associate (entry => list%entry(i))
                if (entry%kind == '' .and. entry%node == '' .and. entry%panel == '' .and. &
                    .not. allocated(entry%position)) cycle
-               call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, position, node and panel '// &
-                                    'belong to springs of a frame; give joint, or a group &frame')
+               call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, position, node and '// &
+                                    'panel belong to springs of a frame; give joint, or a group &frame')
             end associate
          end do
       end subroutine refuse_frame

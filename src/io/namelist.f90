@@ -167,8 +167,8 @@ contains
          if (entry%subscript > 0 .and. key%most == 1) then
             call messages%add(location//"'"//trim(entry%name)//"' takes no subscript")
          else if (entry%subscript > 0 .and. total > entry%subscript) then
-            call messages%add(location//"'"//trim(entry%name)//'('//to_text(entry%subscript)//")' takes one "// &
-                              'value, not '//to_text(entry%total)//'; give a list without subscript')
+            call messages%add(location//"'"//trim(entry%name)//'('//to_text(entry%subscript)//")' takes "// &
+                              'one value, not '//to_text(entry%total)//'; give a list without subscript')
          else if (total > key%most) then
             call messages%add(location//"'"//trim(entry%name)//"' has "//to_text(total)// &
                               ' values; it takes '//to_text(key%most)//' at the most')

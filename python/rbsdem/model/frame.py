@@ -127,12 +127,9 @@ class FrameMember:
 
     def at(self, group: str, position: float) -> Spring | None:
         """Return the spring of a group that was given at a position, None without one."""
-        own = (
-            self.axial_spring
-            if group == "axial_spring"
-            else dict(self._springs(group)).get(position)
-        )
-        return own
+        if group == "axial_spring":
+            return self.axial_spring
+        return dict(self._springs(group)).get(position)
 
     def _springs(self, group: str) -> tuple[tuple[float, Spring], ...]:
         return getattr(self, group) or ()

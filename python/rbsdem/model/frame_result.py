@@ -396,11 +396,8 @@ class FrameResult(Rows):
         """Return rotations beyond those at the first yield of an end to each side."""
         found = np.zeros_like(turned)
         for spring, values, _ in self._springs():
-            if (
-                spring.member != name
-                or spring.group != "flexure"
-                or spring.position not in (0.0, 1.0)
-            ):
+            at_end = spring.position in (0.0, 1.0)
+            if (spring.member, spring.group, at_end) != (name, "flexure", True):
                 continue
             points = [(one, self._reached(one, values)) for one in self.frame.landmarks[spring]]
             for point, row in [*points, *self._yields(spring, values)]:
