@@ -233,7 +233,7 @@ def main() -> None:
         for key, one in found.items():
             reference = one.reference
             print(f"- {name(key)}: {reference.first} against {reference.second}")
-            for text in filter(None, (reference.note, *one.notes)):
+            for text in filter(None, (reference.warning, *one.warnings)):
                 print(f"  ({text})")
         print()
         families = same_settings(found)

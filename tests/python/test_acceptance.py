@@ -133,15 +133,15 @@ def test_a_joint_by_hand_en_1998_1():
 def test_shear_beyond_its_strength_is_explained_where_no_spring_fails(push):
     found = assess(push, "en_1998_3", at=0.1)
     assert not found.counts()["shear"]
-    assert found.notes == ()
+    assert found.warnings == ()
     weak = [row | {"ratio_shear": 1.1} if row["end"] == "start" else row for row in found.rows]
-    (note,) = replace(found, rows=weak).notes
+    (note,) = replace(found, rows=weak).warnings
     assert f"at {sum(row['ratio_shear'] == 1.1 for row in weak)} ends" in note
     assert "A.12" in note
     assert str(replace(found, rows=weak)).endswith(note)
     # A joint is no spring, and where a spring fails there is nothing to explain.
     joints = [row | {"ratio_shear": 1.1} if row["end"] == "joint" else row for row in found.rows]
-    assert replace(found, rows=joints).notes == ()
+    assert replace(found, rows=joints).warnings == ()
 
 
 def test_shear_of_joints_by_statics(frame, push):

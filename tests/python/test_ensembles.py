@@ -195,19 +195,19 @@ def test_measures_of_functions() -> None:
     assert warnings.filters == filters
 
 
-def test_runs_are_remarked_where_single_ones_warn() -> None:
+def test_runs_are_warned_of_where_single_ones_warn() -> None:
     found = rbsdem.ensemble(
         {"small": column(), "finite": column(kinematics="finite")}, motion(1),
         scales=[1.0, 3.0, 5.0, 10.0, 20.0, 30.0], method="newmark", collapse_drift=None,
     )  # fmt: skip
-    remarked = list(found.to_pandas()["remark"] != "")
+    warned = list(found.to_pandas()["warnings"] != "")
     for run in range(len(found)):
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
             found.history(run)
-        assert remarked[run] == any("rotation of a body" in str(one.message) for one in told)
-    assert 0 < sum(remarked) < len(found)
-    assert f"{sum(remarked)} with remarks" in repr(found)
+        assert warned[run] == any("rotation of a body" in str(one.message) for one in told)
+    assert 0 < sum(warned) < len(found)
+    assert f"{sum(warned)} with warnings" in repr(found)
 
 
 def test_table() -> None:
@@ -220,7 +220,7 @@ def test_table() -> None:
         "scale",
         "status",
         *MEASURES,
-        "remark",
+        "warnings",
         "error",
     ]
     assert list(table["column"]) == ["a", "a"]

@@ -135,7 +135,7 @@ def test_warnings_are_notes(table):
         warnings.warn("hm", rbsdem.errors.AccuracyWarning, stacklevel=1)
         return good(specimen)
 
-    assert peer.predict(table[0], bold).note == "hm"
+    assert peer.predict(table[0], bold).run_warnings == "hm"
 
 
 def test_the_papers_model_by_name(table):

@@ -123,7 +123,7 @@ def test_shear_spring_agrees_with_the_reference(key: str) -> None:
     spring = found.spring
     values = (spring.k, spring.d_y, spring.k_post, found.knee.force / 1e3, 1e3 * found.end.strain)
     np.testing.assert_allclose(values, lines, rtol=0.015)
-    assert found.notes == ()
+    assert found.warnings == ()
     assert not found.governs
     k, d_y = closed_form_shear(
         section, length, rbsdem.section.diagram(section, load).events.cracking.moment
@@ -218,7 +218,7 @@ def test_short_column_without_ties_is_governed_by_shear() -> None:
     )
     found = fit_shear_spring(section, 0.8, 100e3, 0.03)
     assert found.governs
-    assert "shear governs" in found.notes[0]
+    assert "shear governs" in found.warnings[0]
     flexure = rbsdem.section.moment_curvature(section, 100e3, 0.03) / 0.8
     assert found.end.force < 0.7 * flexure
     assert found.end.force == pytest.approx(found.strength, rel=1e-6)
@@ -235,7 +235,7 @@ def test_short_column_without_ties_is_governed_by_shear() -> None:
 def test_section_without_a_knee_has_one_line() -> None:
     section, length, load = column("zahn_7")
     found = fit_shear_spring(section, length, load, 1e-4)
-    assert "no knee" in found.notes[0]
+    assert "no knee" in found.warnings[0]
     assert found.spring.k_post == 0.0
     assert found.spring.k * found.spring.d_y == pytest.approx(found.end.force)
 

@@ -204,7 +204,7 @@ def test_largest_strength(near, limit):
     found = target(curve, constant(0.21 * k), near_field=near)
     assert found.factors["mu_max"] == pytest.approx(limit, abs=1e-6)
     beyond = target(curve, constant(0.36 * k), near_field=near)
-    assert bool(beyond.notes) == (beyond.ductility > beyond.factors["mu_max"])
+    assert bool(beyond.warnings) == (beyond.ductility > beyond.factors["mu_max"])
 
 
 @pytest.mark.parametrize(

@@ -131,7 +131,7 @@ def test_reference_of_the_paper_column_has_two_methods(shaken):
     # A method of another kind, implicit instead of explicit, tends to the same answer.
     implicit = rows_of(shaken, "newmark", "pdelta")
     assert implicit[-1].error < implicit[0].error / 30
-    assert any("of another kind" in note for note in shaken.notes)
+    assert any("of another kind" in note for note in shaken.warnings)
 
 
 def test_settings_of_all_kinds_are_there(shaken):
@@ -255,10 +255,10 @@ def test_what_does_not_fit_into_the_budget_is_left_out_and_told():
     skipped = [row for row in found.rows if row.status == "skipped"]
     assert any(row.setting.method == "rk4" for row in skipped)
     assert all("would take about" in row.reason for row in skipped)
-    assert any("did not fit" in note for note in found.notes)
+    assert any("did not fit" in note for note in found.warnings)
     # Implicit methods do it in time, and then make up the reference.
     assert any(row.setting.method == "newmark" and row.error < 0.05 for row in found.rows)
-    assert found.reference.note.endswith("share the solver of the equations")
+    assert found.reference.warning.endswith("share the solver of the equations")
 
 
 def test_no_time_at_all():
@@ -315,7 +315,7 @@ def test_falling_force_cannot_be_driven_back():
         axial_load=1e6,
     )
     found = compare_methods(column, displacement=np.linspace(0.0, 0.02, 50))
-    assert "increments are compared" in found.reference.note
+    assert "increments are compared" in found.reference.warning
     assert found.reference.digits > 10
 
 

@@ -383,7 +383,7 @@ class Assessment(Tabular):
         return found
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Explanations that a reader needs: of shear beyond its strength where no spring fails."""
         ends = sum(row["ratio_shear"] > 1.0 for row in self.rows if row["end"] in ("start", "end"))
         most = math.inf if self.displacement is None else abs(self.displacement)
@@ -414,7 +414,7 @@ class Assessment(Tabular):
         return f"Assessment({self.code}, {where}, {len(self.rows)} ends: {told or 'all within'})"
 
     def __str__(self) -> str:
-        return "\n".join((repr(self), *self.notes))
+        return "\n".join((repr(self), *self.warnings))
 
 
 def assess(

@@ -235,8 +235,8 @@ class Ensemble(Tabular):
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{number} {status}" for status, number in self.counts.items())
-        noted = int((self.remarks != "").sum())
-        more = f", {noted} with remarks" if noted else ""
+        noted = int((self.warnings != "").sum())
+        more = f", {noted} with warnings" if noted else ""
         return (
             f"Ensemble({len(self.columns)} columns x {len(self.motions)} motions, {len(self)} "
             f"runs: {counts}{more}; {self.seconds:.3g} s)"
@@ -262,7 +262,7 @@ class Ensemble(Tabular):
         return bibtex(parts)
 
     @property
-    def remarks(self) -> NDArray[np.str_]:
+    def warnings(self) -> NDArray[np.str_]:
         """Of each run, what `time_history` would warn of after it; "" where that is nothing.
 
         Only what its measures show: rotations ("peak_rotation") of columns without kinematics
@@ -286,7 +286,7 @@ class Ensemble(Tabular):
         return found
 
     def to_pandas(self) -> DataFrame:
-        """Return a DataFrame, a row for each run: what it is, its measures, remark and error."""
+        """Return a DataFrame, a row for each run: what it is, its measures, warnings and error."""
         import pandas  # noqa: PLC0415
 
         values = {
@@ -301,7 +301,7 @@ class Ensemble(Tabular):
         errors = pandas.Series("", index=range(len(self)), dtype=object)
         for run, text in self.errors.items():
             errors[run] = text
-        return data_frame(values | {"remark": self.remarks.astype(object), "error": errors})
+        return data_frame(values | {"warnings": self.warnings.astype(object), "error": errors})
 
     def history(self, run: int) -> Result:
         """Solve one run again, with its history; the bits are those of the run.

@@ -62,7 +62,7 @@ class Target(Tabular):
         mu_strength of ASCE 41, else displacement over that at yield.
     factors : dict of str to float
         The coefficients of the method by name.
-    notes : tuple of str
+    warnings : tuple of str
         What a reader has to know.
     push : FrameResult or None
         The push-over; None where a `Capacity` was given.
@@ -77,7 +77,7 @@ class Target(Tabular):
     period: float
     ductility: float
     factors: dict[str, float]
-    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     push: FrameResult | None = None
 
     @property
@@ -542,15 +542,15 @@ def asce_41(
     end = _settled(lambda u: demand(u)[0], curve.peak)
     target, lines, period, strength = demand(end)
     limit, softening = _most_strength(curve, lines, spectrum, near_field, period)
-    notes = []
+    warnings = []
     if strength > limit:
-        notes.append(
+        warnings.append(
             f"mu_strength = {strength:.3g} is above mu_max = {limit:.3g}: a nonlinear static "
             "procedure is not allowed (ASCE 41-17, 7.3.2.1); look at records."
         )
     factors = {"C_0": first, **found, "mu_max": limit, "alpha_1": lines.post_yield_ratio}
     named = "asce_41", "ASCE 41-17, 7.4.3.3.2", curve, spectrum
-    return Target(*named, target, lines, period, strength, factors | softening, tuple(notes))
+    return Target(*named, target, lines, period, strength, factors | softening, tuple(warnings))
 
 
 def _settled(demand: Callable[[float], float], most: float) -> float:
@@ -629,9 +629,9 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
     lines = curve.idealise("ec_8", end)
     factors = {"Gamma": curve.gamma, "m*": curve.modal_mass, **found, "T_C": spectrum.corner}
     named = "en_1998", "EN 1998-1:2004, annex B", curve, spectrum
-    notes = ("The lines are drawn up to the target displacement.",) if iterate else ()
+    warnings = ("The lines are drawn up to the target displacement.",) if iterate else ()
     ductility = target / lines.yield_displacement
-    return Target(*named, target, lines, found["T*"], ductility, factors, notes)
+    return Target(*named, target, lines, found["T*"], ductility, factors, warnings)
 
 
 def equivalent(ductility: float) -> tuple[float, float]:
@@ -694,10 +694,10 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
     lines = curve.idealise("asce_41", end)
     secant = curve.force_at(end) / end
     found["T_sec"] = 2.0 * math.pi * math.sqrt(curve.modal_mass / secant)
-    notes = []
+    warnings = []
     if not 0.2 < found["T_0"] < 2.0:
-        notes.append(f"T_0 = {found['T_0']:.3g} s is outside of the fit of FEMA 440, 0.2 to 2 s.")
+        warnings.append(f"T_0 = {found['T_0']:.3g} s is outside the fit of FEMA 440, 0.2 to 2 s.")
     named = "capacity_spectrum", "FEMA 440, chapter 6", curve, spectrum
     factors = {"Gamma": curve.gamma, **found, "alpha": lines.post_yield_ratio}
     ductility = end / lines.yield_displacement
-    return Target(*named, target, lines, found["T_eff"], ductility, factors, tuple(notes))
+    return Target(*named, target, lines, found["T_eff"], ductility, factors, tuple(warnings))

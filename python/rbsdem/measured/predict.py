@@ -91,8 +91,8 @@ class Prediction:
         The path [m] and the lateral forces along it [N], NaN behind an early end.
     error : str
         Text of the exception.
-    note : str
-        Warnings.
+    run_warnings : str
+        Warnings of the analysis.
     seconds : float
         Wall time for the column and its analysis [s].
     comparison : rbsdem.curves.scores.Comparison or None
@@ -115,7 +115,7 @@ class Prediction:
     displacement: Array = field(default_factory=lambda: np.empty(0), compare=False)
     force: Array = field(default_factory=lambda: np.empty(0), compare=False)
     error: str = ""
-    note: str = ""
+    run_warnings: str = ""
     seconds: float = 0.0
     comparison: Comparison | None = None
     band: Band | None = None
@@ -316,7 +316,7 @@ def _row(
         if row.status == "completed" and comparison.path_fraction < 1:
             row = replace(row, status="stopped", error=f"the forces end at row {comparison.rows}")
     note = "; ".join(dict.fromkeys(str(warning.message) for warning in caught))
-    return replace(row, note=note, warnings=getattr(column, "warnings", ())), column
+    return replace(row, run_warnings=note, warnings=getattr(column, "warnings", ())), column
 
 
 # ---- tables -------------------------------------------------------------------------------------
@@ -351,7 +351,7 @@ def _scores(row: Prediction) -> dict[str, Any]:
         **{name: row.score(name) for name in (*SCORES, *_LOSSES)},
         "seconds": row.seconds,
         "error": row.error,
-        "note": row.note,
+        "run_warnings": row.run_warnings,
         "warnings": "; ".join(row.warnings),
     }
     if row.limit_states is not None:

@@ -57,7 +57,7 @@ class Reference:
         Digits asked for.
     seconds : float
         Wall time of the reference [s].
-    note : str
+    warning : str
         Remarks on it.
     explicit : bool or None
         Whether both methods are explicit; None if the path is static or the kinds differ.
@@ -73,7 +73,7 @@ class Reference:
     peak_digits: float
     wanted: float
     seconds: float
-    note: str
+    warning: str
     explicit: bool | None
     answer: Answer = field(repr=False, compare=False)
 
@@ -197,10 +197,10 @@ def _bring_together(pair: list[_Ladder], budget: Budget, share: float, wanted: f
         apart = min(apart, now)
 
 
-def compare(first: SolvedRun, second: SolvedRun, wanted: float, note: str) -> Reference:
+def compare(first: SolvedRun, second: SolvedRun, wanted: float, warning: str) -> Reference:
     """Return the reference that two runs make."""
     apart = errors_of(second.answer, first.answer)
-    parts = [note] if note else []
+    parts = [warning] if warning else []
     if digits(apart.response_max) < wanted:
         parts.append(
             f"the two agree to {digits(apart.response_max):.1f} digits only, "
@@ -243,8 +243,8 @@ def _static_reference(trials: MethodRuns, wanted: float) -> Reference | str:
         runs.append(run)
     if len(runs) < 2:
         return trouble
-    note = "the response cannot be driven back; increments are compared"
-    return compare(runs[0], runs[1], wanted, note)
+    warning = "the response cannot be driven back; increments are compared"
+    return compare(runs[0], runs[1], wanted, warning)
 
 
 def _inverse(case: StudyCase, answer: Answer, parts: int) -> SolvedRun | None:

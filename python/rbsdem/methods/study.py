@@ -156,7 +156,7 @@ class MethodStudy(Tabular):
     rows : tuple of MethodRun
         All settings, families together, coarse ones first.
     reference : Reference or None
-        The solution that errors are measured against; None if there is none, as `notes` says.
+        The solution that errors are measured against; None if there is none, as `warnings` says.
     choice : Choice or None
         The cheapest setting that meets the user's tolerance, if one was given.
     physics : Physics or None
@@ -165,8 +165,8 @@ class MethodStudy(Tabular):
         Kind of response: "displacement" or "force".
     seconds, budget : float
         Wall time used and wall time allowed [s].
-    notes : tuple of str
-        Further remarks.
+    warnings : tuple of str
+        What the table does not show.
     """
 
     rows: tuple[MethodRun, ...]
@@ -176,7 +176,7 @@ class MethodStudy(Tabular):
     response: str
     seconds: float
     budget: float
-    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     def cheapest(self, tolerance: float) -> MethodRun | None:
         """Return the cheapest setting whose error is within a tolerance, or None.
@@ -308,15 +308,15 @@ def compare_methods(
         reference = find_reference(trials, REFERENCE_SHARE, digits)
         known = reference if isinstance(reference, Reference) else None
         physics = find_physics(trials, known, tolerance, axial_spring)
-    notes = [f"reference: {reference}"] if known is None else []
+    warnings = [f"reference: {reference}"] if known is None else []
     if isinstance(physics, str):
-        notes.append(f"physics: {physics}")
+        warnings.append(f"physics: {physics}")
     rows = make_rows(trials.runs, known)
     choice = None if tolerance is None else choose(rows, tolerance)
     found = physics if isinstance(physics, Physics) else None
-    notes += _notes(case, rows, known)
+    warnings += _warnings(case, rows, known)
     spent = clock.used(), budget
-    return MethodStudy(rows, known, choice, found, case.response_name, *spent, tuple(notes))
+    return MethodStudy(rows, known, choice, found, case.response_name, *spent, tuple(warnings))
 
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
@@ -341,9 +341,9 @@ def _need_one(runs: Sequence[MethodRun]) -> None:
     raise InputError(f"compare_methods: the budget is too small for any setting; {runs[0].reason}")
 
 
-def _notes(case: StudyCase, rows: Sequence[MethodRun], reference: Reference | None) -> list[str]:
-    """Return remarks that the table does not show."""
-    notes = []
+def _warnings(case: StudyCase, rows: Sequence[MethodRun], reference: Reference | None) -> list[str]:
+    """Return warnings that the table does not show."""
+    warnings = []
     third = None
     if reference is not None and reference.explicit is not None:
         # The most accurate implicit setting if the reference is explicit, and vice versa.
@@ -352,12 +352,12 @@ def _notes(case: StudyCase, rows: Sequence[MethodRun], reference: Reference | No
         others = [row for row in known if (row.setting.method in IMPLICIT) == kind]
         third = min(others, key=lambda row: row.error, default=None)
     if third is not None:
-        notes.append(
+        warnings.append(
             f"a method of another kind, {third.setting}, comes to within {third.error:.1e} of the "
             "reference"
         )
     if any(row.status == "skipped" for row in rows):
-        notes.append("some settings did not fit into the budget; a larger one tries them")
+        warnings.append("some settings did not fit into the budget; a larger one tries them")
     if case.static and case.column.kinematics != "finite":
-        notes.append("the static path is exact; errors come from the points that are left out")
-    return notes
+        warnings.append("the static path is exact; errors come from the points that are left out")
+    return warnings

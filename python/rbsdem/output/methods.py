@@ -157,8 +157,8 @@ def report(study: MethodStudy, title: str) -> None:
             f"{reference.moment_digits:.1f} in base moment, {reference.energy_digits:.1f} in "
             f"energy and {reference.peak_digits:.1f} in peak."
         )
-        if reference.note:
-            say(f"Note: {reference.note}.")
+        if reference.warning:
+            say(f"Note: {reference.warning}.")
     say()
     out.print(table(_settings(study), styles=_styles(study)))
     say("\n* on the Pareto front. Errors are relative to the reference's peaks; Error is the")
@@ -176,8 +176,8 @@ def report(study: MethodStudy, title: str) -> None:
         for effect in physics.effects:
             if effect.matters is None:
                 say(f"  {effect.part} {effect.status}: {effect.reason}")
-    for note in study.notes:
-        say(f"Note: {note}.")
+    for warning in study.warnings:
+        say(f"Note: {warning}.")
     say(f"\nDone in {study.seconds:.1f} s of {study.budget:g} s.")
 
 

@@ -52,7 +52,7 @@ class SectionSprings:
         Of the column [m], [N].
     d_m : float
         Rotation at which eq 7 of the paper was taken for B_1 [rad].
-    notes : tuple of str
+    warnings : tuple of str
         Remarks that a user should know.
     """
 
@@ -66,7 +66,7 @@ class SectionSprings:
     length: float
     axial_load: float
     d_m: float
-    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
 
     @property
     def report(self) -> str:
@@ -95,7 +95,7 @@ class SectionSprings:
             of_flexure = self.events.ultimate.moment / length / 1e3
             strength = self.shear_fit.strength / 1e3
             lines.append(f"         strength {strength:.0f} kN, flexure {of_flexure:.0f} kN")
-        return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"note: {warning}" for warning in self.warnings)])
 
 
 def springs(
@@ -190,17 +190,17 @@ def springs(
     given = _core.group("springs", settings | words | {"confined": confined})
     answer = _core.evaluate("section_flexure", section._statement + given)
     found = _core.named("spring", answer.values)
-    notes = []
-    note = axial_load_note(axial_load, section)
-    if note:
-        notes.append(f"springs: {note}")
+    warnings = []
+    warning = axial_load_note(axial_load, section)
+    if warning:
+        warnings.append(f"springs: {warning}")
     if not section.symmetric:
-        notes.append(
+        warnings.append(
             "springs: the section is not symmetric; both directions have the springs of y > 0 in "
             "tension (`section.mirrored` has those of the other)"
         )
     if found["k_u_found"] < 0.0:
-        notes.append(
+        warnings.append(
             f"K_u = {found['k_u_found']:.4g} N m/rad: the moment falls from yield to the ultimate "
             "point; the spring has K_u = 0"
         )
@@ -214,17 +214,17 @@ def springs(
         assert end is not None
         shear_fit = fit_shear_spring(section, length, axial_load, end.curvature, confined=confined)
         spring = shear_fit.spring
-        notes += shear_fit.notes
+        warnings += shear_fit.warnings
     elif shear == "closed":
         assert cracking is not None
         spring = Bilinear(*closed_form_shear(section, length, cracking.moment), k_post=0.0)
     if spring is not None:
         for_whole_column(spring, "shear")
-    for note in notes:
-        warn(note)
+    for warning in warnings:
+        warn(warning)
     parts = flexure, spring, shear_fit, events
     sizes = found["hinge_length"], length, axial_load, found["d_m"]
-    return SectionSprings(section, confined, *parts, *sizes, tuple(notes))
+    return SectionSprings(section, confined, *parts, *sizes, tuple(warnings))
 
 
 KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")

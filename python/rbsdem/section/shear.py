@@ -263,7 +263,7 @@ class ShearSpring:
         Stiffness after yield before it was raised to zero or held below the first one [N/m].
     governs : bool
         Whether shear fails before the end point in flexure.
-    notes : tuple of str
+    warnings : tuple of str
         Remarks that a user should know.
     """
 
@@ -273,7 +273,7 @@ class ShearSpring:
     strength: float
     k_post_found: float
     governs: bool
-    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
 def fit_shear_spring(
@@ -313,21 +313,21 @@ def fit_shear_spring(
         # Who asks for springs is told of an odd axial load once.
         diagram = shear_diagram(section, length, axial_load, furthest=ultimate_curvature, **options)
     strength = shear_strength_mcft(section, length, axial_load)
-    notes = []
+    warnings = []
     end = _at_force(diagram, strength)
     governs = end is not None or diagram.sheared
     if end is not None:
-        notes.append(
+        warnings.append(
             f"shear governs: its strength of {strength:.4g} N is below the "
             f"{diagram.force.max():.4g} N of flexure; the spring goes through it"
         )
     elif diagram.sheared:
-        notes.append(
+        warnings.append(
             f"shear governs: a layer carries no more at {diagram.end.force:.4g} N, before the "
             f"ultimate curvature"
         )
     elif diagram.lost:
-        notes.append("shear spring: the axial load is lost before the ultimate curvature")
+        warnings.append("shear spring: the axial load is lost before the ultimate curvature")
     end = end or _last_useful(diagram)
     if not end.strain > 0.0:
         raise InputError(
@@ -336,7 +336,7 @@ def fit_shear_spring(
         )
     knee = diagram.knee
     if knee is None or knee.strain >= end.strain:
-        notes.append(
+        warnings.append(
             "shear spring: no knee before its end point; one line to there, and no stiffness beyond"
         )
         knee, k_post = end, 0.0
@@ -344,11 +344,11 @@ def fit_shear_spring(
         k_post = (end.force - knee.force) / ((end.strain - knee.strain) * length)
     k = knee.force / (knee.strain * length)
     if k_post < 0.0:
-        notes.append(
+        warnings.append(
             f"shear spring: the stiffness after yield, {k_post:.4g} N/m, is negative; zero is taken"
         )
     spring = Bilinear(k=k, d_y=knee.strain * length, k_post=min(max(k_post, 0.0), 0.99 * k))
-    return ShearSpring(spring, knee, end, strength, k_post, governs, tuple(notes))
+    return ShearSpring(spring, knee, end, strength, k_post, governs, tuple(warnings))
 
 
 def closed_form_shear(

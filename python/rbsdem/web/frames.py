@@ -336,7 +336,7 @@ def checked(result: FrameResult, state: Mapping[str, Any]) -> dict[str, Any]:
         return {"faults": [{"field": "frame.demand.code", "text": str(error)}]}
     found: dict[str, Any] = {"faults": [none] if none else [], "code": made.code}
     found |= {"levels": made.levels, "at_target": made.displacement is not None}
-    found |= {"ends": _ends(made), "notes": made.notes}
+    found |= {"ends": _ends(made), "notes": made.warnings}
     if point is not None:
         lines = point.lines
         found["target"] = {

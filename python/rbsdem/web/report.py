@@ -432,7 +432,7 @@ def _of_assessment(
     if target is not None:
         curves.append(partial(frames.target, target))
         end = () if target.reached else ("The push-over ends before the target.",)
-        text = " ".join((f"{target.source}.", *end, *target.notes))
+        text = " ".join((f"{target.source}.", *end, *target.warnings))
     table = None if target is None else target.to_pandas()
     yield Sheet("Target displacement", text, tuple(curves), table)
     if check is not None:
@@ -453,9 +453,12 @@ def _of_assessment(
         drawn.append(partial(frames.storey_drift, result))
     drawn.append(partial(frames.assessment, found))
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
-    told = ["What is beyond its strength in shear has the colour of the last level.", *found.notes]
+    told = [
+        "What is beyond its strength in shear has the colour of the last level.",
+        *found.warnings,
+    ]
     text = f"{found.source}: ends and joints beyond each level: {counts}."
-    text = " ".join((text, *told, "The ten largest ratios follow."))
+    text = " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
     yield Sheet("Members", text, tuple(drawn), found.worst(10))
     yield Sheet("All members", table=found.to_pandas(), beside=True)
     yield Sheet("Assumed", f"{result.scope_note} {_LEFT_OUT}")
@@ -508,10 +511,10 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
     table = found.to_pandas()
     states = {"status": list(found.counts), "runs": list(found.counts.values())}
     yield Sheet("Runs", str(found), table=data_frame(states))
-    noted = table[["remark", "error"]].melt(var_name="kind", value_name="text")
+    noted = table[["warnings", "error"]].melt(var_name="kind", value_name="text")
     noted = noted[noted["text"] != ""].value_counts().rename("runs").reset_index()
     if len(noted):
-        yield Sheet("Remarks and errors", table=noted.head(20))
+        yield Sheet("Warnings and errors", table=noted.head(20))
     names = list(found.measures)
     measured = table.assign(**table[names].abs()).groupby("column", observed=True)[names]
     shares = measured.quantile([0.0, 0.16, 0.5, 0.84, 1.0]).stack().unstack(1)
