@@ -453,10 +453,7 @@ def _of_assessment(
         drawn.append(partial(frames.storey_drift, result))
     drawn.append(partial(frames.assessment, found))
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
-    told = [
-        "What is beyond its strength in shear has the colour of the last level.",
-        *found.warnings,
-    ]
+    told = "What is beyond its strength in shear has the colour of the last level."
     text = f"{found.source}: ends and joints beyond each level: {counts}."
     text = " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
     yield Sheet("Members", text, tuple(drawn), found.worst(10))
