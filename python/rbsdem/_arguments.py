@@ -81,9 +81,9 @@ def within(
     below: float | None = None,
     most: float | None = None,
     unit: str = "",
-    why: str = "",
+    hint: str = "",
 ) -> Number:
-    """Return a number if it is finite and within its bounds; `why` ends the message."""
+    """Return a number if it is finite and within its bounds; `hint` ends the message."""
     low = -np.inf if least is None else least
     high = np.inf if most is None else most
     inside = low <= value <= high and abs(value) < np.inf
@@ -96,7 +96,7 @@ def within(
         text = f"{least:.15g} or more" if len(said) == 1 else text.replace(" and ", " to ", 1)
         text = text.replace(" to at most ", " to ")
     text += " and finite" if said and not abs(value) < np.inf else ""
-    raise InputError(f"{name} = {value:.6g}{unit and ' '}{unit} must be {text}{why}")
+    raise InputError(f"{name} = {value:.6g}{unit and ' '}{unit} must be {text}{hint}")
 
 
 def integer(value: Any, name: str, **bounds: Any) -> int:

@@ -505,7 +505,7 @@ def fit_fragility(
     if not isinstance(data, (Counts, Capacities)):
         raise InputError(f"{who}data = {_arguments.shown(data)} must be Counts or Capacities")
     if beta is not None:
-        beta = _arguments.number(beta, f"{who}beta", above=0, why=", as 0.4")
+        beta = _arguments.number(beta, f"{who}beta", above=0, hint=", as 0.4")
     _check(who, data, beta)
     if isinstance(data, Capacities) and data.known and beta is None:
         mu, spread = (float(value) for value in fit_points(data.values))

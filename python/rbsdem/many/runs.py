@@ -424,7 +424,7 @@ def make_collector(
             "collapse_drift",
             above=0,
             below=1,
-            why="; it is a displacement over the height",
+            hint="; it is a displacement over the height",
         ),
         "initial": initial,
         "jobs": jobs,

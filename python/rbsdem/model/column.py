@@ -83,8 +83,8 @@ class Damping:
         InputError
             If a frequency is not positive, or both are the same.
         """
-        why = " (critical damping)"
-        ratio = _arguments.number(ratio, "damping: ratio", least=0, below=1, why=why)
+        hint = " (critical damping)"
+        ratio = _arguments.number(ratio, "damping: ratio", least=0, below=1, hint=hint)
         omega = []
         for name, value in (("frequency_1", frequency_1), ("frequency_2", frequency_2)):
             frequency = _arguments.number(value, f"damping: {name}", above=0, unit="Hz")

@@ -205,13 +205,13 @@ class DesignSpectrum(Tabular):
 
 
 def _part_of_g(value: float, name: str) -> float:
-    why = "; it is a part of g, as 0.3"
-    return _arguments.number(value, f"spectrum: {name}", above=0.0, most=5.0, why=why)
+    hint = "; it is a part of g, as 0.3"
+    return _arguments.number(value, f"spectrum: {name}", above=0.0, most=5.0, hint=hint)
 
 
 def _ratio(damping: float) -> float:
-    why = "; it is a ratio, not a percentage"
-    return _arguments.number(damping, "spectrum: damping", above=0.0, most=0.5, why=why)
+    hint = "; it is a ratio, not a percentage"
+    return _arguments.number(damping, "spectrum: damping", above=0.0, most=0.5, hint=hint)
 
 
 def _en_1998(

@@ -88,8 +88,8 @@ def response_spectrum(
             f"periods: value {first + 1} of {period.size} is {period[first]:g} s; natural periods "
             f"are 0 or from {_SHORTEST:g} to {_LONGEST:g} s"
         )
-    why = "; it is a ratio, not a percentage"
-    ratio = _arguments.number(damping, "damping", least=0, most=_MOST_DAMPING, why=why)
+    hint = "; it is a ratio, not a percentage"
+    ratio = _arguments.number(damping, "damping", least=0, most=_MOST_DAMPING, hint=hint)
     peaks = _core.evaluate(
         "spectrum", acceleration=acceleration, dt=dt, period=period, damping=ratio
     ).rows

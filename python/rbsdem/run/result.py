@@ -543,7 +543,7 @@ def pushover(
         if not isinstance(structure, Frame):
             raise InputError("pushover: pattern is for frames; a column is pushed at its top")
         structure = replace(structure, pattern=pattern)  # type: ignore[arg-type]
-    far = _arguments.number(given[said[0]], f"pushover: {said[0]}", why=" that is not 0")
+    far = _arguments.number(given[said[0]], f"pushover: {said[0]}", hint=" that is not 0")
     if far == 0:
         raise InputError(f"pushover: {said[0]} = 0 must be a finite number that is not 0")
     if said[0] == "drift":

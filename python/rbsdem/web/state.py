@@ -400,7 +400,7 @@ def _drift(given: Mapping[str, Any], name: str) -> float | None:
     """Return a drift of a protocol of the literature, of a size to look at."""
     if given.get(name) is None:
         return None
-    return _arguments.number(given[name], name, least=1e-4, most=1.0, why=", a drift")
+    return _arguments.number(given[name], name, least=1e-4, most=1.0, hint=", a drift")
 
 
 def _factor(given: Mapping[str, Any]) -> float:
