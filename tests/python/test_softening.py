@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.springs import Elastic, PeakOriented
+from rbsdem.springs import Bilinear, Elastic, PeakOriented, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -141,3 +141,16 @@ def test_a_joint_that_slips_at_its_residual_force_leaves_the_others_at_rest(
     assert abs(whole.force[-1]) == pytest.approx(shear.f_res, rel=1e-12)
     parts = rbsdem.cyclic(chain, displacement=np.concatenate(steps))
     np.testing.assert_allclose(whole.force, parts.force[7::8], rtol=1e-9)
+
+
+def test_a_plastic_joint_turns_alone():
+    """Two bodies: the base has its plastic moment, the joint above stays elastic and at rest."""
+    height, load, k, d_y = 2.56, 3500.0, 9.19e7, 1.992e-3
+    shear = Takeda(9.18e7, 5.357e-4, 2.2955e7, 1.7855e-3, 4.59e5, b1=0.3)
+    chain = rbsdem.Column(
+        height, MASS, shear, Bilinear(k, d_y, 0.0), n=2, axial_load=load, kinematics="pdelta"
+    )
+    turns = height * np.array([0.01, -0.01, 0.02, -0.02, 0.03, -0.03, 0.04])
+    moment = rbsdem.cyclic(chain, displacement=turns).moment[1:]
+    np.testing.assert_allclose(abs(moment[:, 0]), k * d_y, rtol=1e-12)
+    assert (abs(moment[:, 1]) < 0.51 * k * d_y).all()

@@ -277,6 +277,7 @@ contains
             largest = max(largest, abs(rate(i)))
             correction = max(correction, abs(self%correction(i)))
          end do
+         call clear_at_rest(self%structure, k(:m), rate(:m))
          found = largest < without_end
          self%force_rate = row(m + 2, m + 1)/self%most
          self%force_correction = row(m + 3, m + 1)/self%most
@@ -288,6 +289,21 @@ contains
          self%dead_load_work_rate = 0.0_wp
       end associate
    end subroutine follow_dense
+
+   !> Where a spring without stiffness moves alone, the rates of all others are round-off: a spring on a
+   !> corner of its curve must not be sent either way by it.
+   pure subroutine clear_at_rest(structure, k, rate)
+      class(structure_type), intent(in) :: structure
+      !> Stiffness and rate of each spring that can move
+      real(wp), intent(in) :: k(:)
+      real(wp), intent(inout) :: rate(:)
+      real(wp) :: moved(size(k))
+
+      if (all(abs(k) > 0.0_wp)) return
+      moved = abs(rate)
+      where (structure%location(:size(k))%kind == flexure) moved = moved*structure%total_height
+      where (moved < at_rest*maxval(moved, mask=.not. abs(k) > 0.0_wp)) rate = 0.0_wp
+   end subroutine clear_at_rest
 
    !> Solve a few equations of one length by elimination with pivots.
    pure subroutine solve_rows(n, row, regular)
@@ -352,7 +368,7 @@ contains
          rate = self%moved(:, 1)
          call springs%joints%open_layers(rate)
          if (self%refines) then
-            call clear_at_rest()
+            call clear_at_rest(structure, springs%k(:self%moving), rate(:self%moving))
          else
             call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
          end if
@@ -373,20 +389,6 @@ contains
       end associate
 
    contains
-
-      !> Where a spring without stiffness moves alone, the rates of all others are round-off: a spring on a
-      !> corner of its curve must not be sent either way by it.
-      subroutine clear_at_rest()
-         real(wp) :: moved(self%moving)
-
-         associate (k => springs%k(:self%moving), rate => rate(:self%moving))
-            if (all(abs(k) > 0.0_wp)) return
-            moved = abs(rate)
-            where (self%structure%location(:self%moving)%kind == flexure) &
-               moved = moved*self%structure%total_height
-            where (moved < at_rest*maxval(moved, mask=.not. abs(k) > 0.0_wp)) rate = 0.0_wp
-         end associate
-      end subroutine clear_at_rest
 
       !> Changes per unit of the driven quantity (1), or by the residual (2), and the force of these changes.
       subroutine solve(j, displacement, regular)
