@@ -64,12 +64,12 @@ contains
       end if
    end subroutine add
 
-   !> Append a message on the text at a place, such as 'case.nml line 4:'; blank if there is none.
-   subroutine add_at(self, place, message)
+   !> Append a message with where its text is, such as 'case.nml line 4:'; blank if there is none.
+   subroutine add_at(self, where, message)
       class(message_list), intent(inout) :: self
-      character(len=*), intent(in) :: place, message
+      character(len=*), intent(in) :: where, message
 
-      call self%add(trim(adjustl(trim(place)//' '//message)))
+      call self%add(trim(adjustl(trim(where)//' '//message)))
    end subroutine add_at
 
    !> Append all messages of another list.

@@ -215,21 +215,21 @@ contains
       l = abs(x) > 0.0_wp
    end subroutine logical_key
 
-   !> A word by its place among the choices.
-   subroutine choice_key(self, name, place, meaning, choices)
+   !> A word by its number among the choices.
+   subroutine choice_key(self, name, choice, meaning, choices)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
-      integer, intent(inout) :: place
+      integer, intent(inout) :: choice
       character(len=*), intent(in) :: meaning, choices
       real(wp) :: x
 
-      x = place
+      x = choice
       call one_number(self, key_type(name=name, kind=word_kind, default=x, choices=choices, &
                                      meaning=meaning), x)
-      place = nint(x)
+      choice = nint(x)
    end subroutine choice_key
 
-   !> The parameters of a rule, a value for each of its keys; a word is its place among the choices. The rule
+   !> The parameters of a rule, a value for each of its keys; a word is its number among the choices. The rule
    !> checks them.
    subroutine parameters(self, keys, value)
       class(key_visitor), intent(inout) :: self

@@ -133,9 +133,9 @@ contains
    !> The next column of the request: the statement holds those of all columns with their settings, each
    !> followed by `after`, the arrays `watches` and `before` the limit states of all and the states that
    !> their runs begin in, and `counts` how many numbers, watches and numbers of its state each has.
-   subroutine next_column(request, place, at, motion, column, error)
+   subroutine next_column(request, number, at, motion, column, error)
       type(request_type), intent(in) :: request
-      integer, intent(in) :: place
+      integer, intent(in) :: number
       !> Where its statement, its numbers, its watches and its state begin; on return those of the column
       !> after it
       integer, intent(inout) :: at(4)
@@ -151,7 +151,7 @@ contains
       associate (counts => request%array('counts'), watches => request%array('watches'), &
                  before => request%array('before'))
          next(1) = at(1) + index(request%statement(at(1):), after)
-         next(2:) = at(2:) + nint(counts(3*place - 2:3*place)*[1, 6, 1])
+         next(2:) = at(2:) + nint(counts(3*number - 2:3*number)*[1, 6, 1])
          call structure_from_statements(request%statement(at(1):next(1) - 2), &
                                      request%number(at(2):next(2) - 1), column%structure, begin, case, error)
          column%watch = watches_of(watches(at(3):next(3) - 1))

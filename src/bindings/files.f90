@@ -33,7 +33,7 @@ contains
       class(structure_type), allocatable :: structure
       type(end_state) :: before
       type(case_text) :: statements
-      integer :: place, m, i
+      integer :: column, m, i
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
       if (allocated(answer%error)) return
@@ -51,8 +51,8 @@ contains
             call sample(history%loads%signal(i), history%time, answer%rows(:, 1 + i))
          end do
       else
-         place = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
-         answer%rows(:, place) = [1.0_c_double, history%target]
+         column = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
+         answer%rows(:, column) = [1.0_c_double, history%target]
          if (size(history%axial_load) > 0) answer%rows(:, 5) = [1.0_c_double, history%axial_load]
       end if
       case%loadings = 0

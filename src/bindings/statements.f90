@@ -61,18 +61,18 @@ contains
       !> Set one key to its value.
       subroutine put_item(item)
          character(len=*), intent(in) :: item
-         integer :: mark, place, count
+         integer :: mark, key_index, count
 
          mark = scan(item//':', '=:')
-         call setter%find(item(:mark - 1), '', place, messages)
-         if (place == 0) return
+         call setter%find(item(:mark - 1), '', key_index, messages)
+         if (key_index == 0) return
          if (index(item, '=') == mark) then
-            call setter%put_text(place, item(mark + 1:), messages)
+            call setter%put_text(key_index, item(mark + 1:), messages)
             return
          end if
          count = 1
          if (mark < len(item)) read (item(mark + 1:), *) count
-         call setter%put_numbers(place, number(at + 1:at + count))
+         call setter%put_numbers(key_index, number(at + 1:at + count))
          at = at + count
       end subroutine put_item
 

@@ -348,14 +348,14 @@ contains
       type(entry_list), intent(in) :: list
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: name
-      integer :: i, j, place
+      integer :: i, j, kind
 
       do i = 1, list%count
          if (list%entry(i)%group /= 'layer_spring') cycle
          name = trim(adjustl(trim(list%entry(i)%where)//' &layer_spring: '))
          if (.not. any(rule_names == list%entry(i)%spring%rule)) then
             call check_name(list%entry(i)%spring%rule, pack(rule_names, suits(rule_names, in_layer)), &
-                            name//' rule', messages, place)
+                            name//' rule', messages, kind)
          end if
          if (list%entry(i)%id < 1) then
             call messages%add(name//' id is missing; give each spring of layers a number of its own')

@@ -97,12 +97,12 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       class(rule_type), allocatable :: rule
-      integer :: place
+      integer :: found_rule
       logical :: sound
 
       call new_rule(self%rule, rule)
       if (.not. allocated(rule)) then
-         call check_name(self%rule, rule_names, name//': rule', messages, place)
+         call check_name(self%rule, rule_names, name//': rule', messages, found_rule)
          return
       end if
       call rule%take(self%value)
@@ -121,7 +121,7 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       type(spring_record) :: layer
-      character(len=:), allocatable :: place
+      character(len=:), allocatable :: prefix
       logical :: ok
       integer :: i
 
@@ -133,17 +133,17 @@ contains
          call messages%add(name//': one layer has no stiffness against rotation; give at least two')
       end if
       do i = 1, size(self%y)
-         call move_to_line(self%line, self%places_line, name, place)
-         call check_finite(self%y(i), place//': y of layer '//to_text(i), 'm', messages, ok)
+         call move_to_line(self%line, self%places_line, name, prefix)
+         call check_finite(self%y(i), prefix//': y of layer '//to_text(i), 'm', messages, ok)
          layer = self%layer(i)
-         call move_to_line(self%line, layer%line, name, place)
+         call move_to_line(self%line, layer%line, name, prefix)
          if (.not. suits(layer%rule, in_layer)) then
-            call messages%add(place//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
+            call messages%add(prefix//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
                               "'; it is one of "//list_of(pack(rule_names, suits(rule_names, in_layer))))
          else if (same_as_before(self, i)) then
             cycle                                   ! its errors have been reported
          else
-            call layer%validate(place//': layer '//to_text(i), messages)
+            call layer%validate(prefix//': layer '//to_text(i), messages)
          end if
          ! All layers may have the same error: a few messages are enough.
          if (messages%count > 20) return

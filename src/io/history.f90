@@ -405,21 +405,21 @@ contains
       end do
    end subroutine split
 
-   !> Place of the separator that ends the first field of a line, 0 if it is the last field; separators
+   !> Position of the separator that ends the first field of a line, 0 if it is the last field; separators
    !> between quotes are not counted.
-   pure integer function end_of_field(line, separator) result(place)
+   pure integer function end_of_field(line, separator) result(at)
       character(len=*), intent(in) :: line
       character(len=1), intent(in) :: separator
       integer :: quote
 
-      place = index(line, separator)
-      if (place == 0) return
-      quote = index(line(:place), '"')
+      at = index(line, separator)
+      if (at == 0) return
+      quote = index(line(:at), '"')
       if (quote == 0) return
       if (verify(line(:quote - 1), ' ') > 0) return
       quote = quote + index(line(quote + 1:), '"')
-      place = index(line(quote + 1:), separator)
-      if (place > 0) place = place + quote
+      at = index(line(quote + 1:), separator)
+      if (at > 0) at = at + quote
    end function end_of_field
 
    !> Remove the blanks around a field, and quotes that enclose it.

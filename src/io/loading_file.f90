@@ -146,12 +146,12 @@ contains
       integer, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
       character(len=64) :: wanted, label(size(history%labels))
-      character(len=:), allocatable :: there
+      character(len=:), allocatable :: available
 
       column = 0
       label = lower(history%labels)
-      there = 'columns: '//list_of(history%labels)
-      if (all(history%labels == '')) there = to_text(history%columns)//' columns without names'
+      available = 'columns: '//list_of(history%labels)
+      if (all(history%labels == '')) available = to_text(history%columns)//' columns without names'
       if (word == '') then
          wanted = drive
          if (drive == 'ground_acceleration') wanted = 'acceleration'
@@ -164,7 +164,7 @@ contains
          if (history%columns == 2 .and. is_time(history%labels(1))) column = 2
          if (column == 0) then
             call fatal_error(error, bad_input, path//": no column is named after '"//trim(drive)// &
-                             "' ("//there//'); name one with '//key)
+                             "' ("//available//'); name one with '//key)
          end if
       else if (is_integer(trim(word))) then
          read (word, '(i9)') column
@@ -179,7 +179,7 @@ contains
                              'more than one column; give the number of the column')
          else if (column == 0) then
             call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is not there ("// &
-                             there//')'//suggestion(word, history%labels))
+                             available//')'//suggestion(word, history%labels))
          end if
       end if
    end subroutine find_column

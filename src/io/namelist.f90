@@ -184,7 +184,7 @@ contains
          type(key_type), intent(in) :: key
          real(wp), allocatable, intent(out) :: number(:)
          character(len=:), allocatable :: what
-         logical, allocatable :: there(:)
+         logical, allocatable :: given(:)
          integer :: j, last
 
          associate (entry => scanned%entry)
@@ -195,18 +195,18 @@ contains
                last = max(last, entry(j)%subscript)
             end do
             if (last > key%most) return                ! is reported with its entry
-            allocate (number(last), there(last))
-            there = .false.
+            allocate (number(last), given(last))
+            given = .false.
             do j = i, group%last
                if (entry(j)%name /= entry(i)%name .or. entry(j)%subscript == 0) cycle
                associate (word => scanned%word(entry(j)%first))
                   call read_value(scanned%text(word%first:word%last), key%kind, number(entry(j)%subscript), &
                                   what)
                end associate
-               there(entry(j)%subscript) = .true.
+               given(entry(j)%subscript) = .true.
             end do
          end associate
-         j = findloc(there, .false., dim=1)
+         j = findloc(given, .false., dim=1)
          if (j == 0) return
          call messages%add(scanned%path//': '//trim(group%name)//': '//trim(key%name)//'('//to_text(j)// &
                            ') is missing before '//trim(key%name)//'('//to_text(last)//'); give them all')

@@ -187,13 +187,13 @@ contains
       subroutine check_unit()
          type(unit_type), allocatable :: units(:)
          character(len=8), allocatable :: names(:)
-         integer :: place
+         integer :: number
 
          if (self%unit == '') return
          units = units_of(self%drive)
          names = units%name
          if (self%drive == 'displacement' .and. self%source == 'protocol') names = ['drift   ', names]
-         call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', messages, place)
+         call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', messages, number)
       end subroutine check_unit
 
       subroutine validate_protocol()

@@ -128,13 +128,13 @@ contains
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
       real(wp), intent(in) :: eps0, curvature
-      real(wp) :: place
+      real(wp) :: tip
 
       cut_strip = 0
       if (laws%shell%tension == tension_zero .or. .not. abs(curvature) > 0.0_wp) return
-      place = crack_tip(laws, eps0, curvature)
-      if (abs(place) < 0.5_wp*section%shape%depth) then
-         cut_strip = 1 + int((place + 0.5_wp*section%shape%depth)/section%strips%dy)
+      tip = crack_tip(laws, eps0, curvature)
+      if (abs(tip) < 0.5_wp*section%shape%depth) then
+         cut_strip = 1 + int((tip + 0.5_wp*section%shape%depth)/section%strips%dy)
          cut_strip = min(size(section%strips%y), cut_strip)
       end if
    end function cut_strip

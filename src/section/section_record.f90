@@ -161,15 +161,15 @@ contains
       end if
    end subroutine check_references
 
-   !> Place of a steel by its number, 0 if it is not there.
-   pure integer function find_steel(self, id) result(place)
+   !> Number of a steel in the list by its id, 0 if it is not there.
+   pure integer function find_steel(self, id) result(number)
       type(section_record), intent(in) :: self
       integer, intent(in) :: id
 
-      do place = 1, size(self%steels)
-         if (self%steels(place)%id == id) return
+      do number = 1, size(self%steels)
+         if (self%steels(number)%id == id) return
       end do
-      place = 0
+      number = 0
    end function find_steel
 
    !> One more steel, without values.

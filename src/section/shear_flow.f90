@@ -24,7 +24,7 @@ module rbs_section_shear_flow
 
    public :: flow_type, begin_flow, shear_stresses, stresses_of_forces, transverse_ratio, couple
 
-   integer, parameter :: most_turns = 200
+   integer, parameter :: most_iterations = 200
 
    !> Largest residuals: axial load as a share of `force_scale`, shear stress as a share of f'c.
    real(wp), parameter :: close_load = 1.0e-6_wp, close_stress = 1.0e-5_wp
@@ -171,12 +171,12 @@ contains
       real(wp), dimension(size(layers)) :: tau, wanted, concrete_force, aside
       real(wp) :: bar_force(size(flow%section%bar_y)), bar_aside(size(flow%section%bar_y))
       real(wp) :: load, slope, scale, eps0
-      integer :: turn
+      integer :: iteration
 
       scale = force_scale(flow%section)
       tau = layer_states%tau
       eps0 = state%eps0
-      do turn = 1, most_turns
+      do iteration = 1, most_iterations
          call membrane_forces(eps0, layer_states, concrete_force, bar_force, found)
          if (.not. found) return
          load = sum(concrete_force) + sum(bar_force)

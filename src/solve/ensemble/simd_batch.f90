@@ -53,7 +53,7 @@ module rbs_solve_ensemble_simd_batch
       !> Steps on which springs leave their lines
       type(one_body_step) :: body
       type(lane_type), allocatable :: lane(:)
-      !> All motions one after the other, each followed by two more points [s, m/s2], and the place of the
+      !> All motions one after the other, each followed by two more points [s, m/s2], and the number of the
       !> first point of each
       real(wp), allocatable :: time(:), acceleration(:)
       integer, allocatable :: first(:)
@@ -187,28 +187,28 @@ contains
    end subroutine create_batch
 
    !> A run begins in a lane. Its first step is taken alone, since the method finds its starting values there.
-   subroutine load_run(batch, l, column, place, motion, first, task, error)
+   subroutine load_run(batch, l, column, column_number, motion, first, task, error)
       type(batch_type), intent(inout) :: batch
       integer, intent(in) :: l
-      !> The column, and its place
+      !> The column, and its number
       type(ensemble_column), intent(in), target :: column
-      integer, intent(in) :: place
+      integer, intent(in) :: column_number
       type(ensemble_motion), intent(in) :: motion
-      !> Place of the first point of the motion in the table
+      !> Number of the first point of the motion in the table
       integer, intent(in) :: first
       type(lane_task), intent(in) :: task
       type(error_type), allocatable, intent(out) :: error
 
       call load_motion(motion, first, task, batch%x, l)
       associate (x => batch%x, y => batch%y, lane => batch%lane(l))
-         if (lane%column == place .and. .not. abs(lane%dt - x%h(l)) > 0.0_wp) then
+         if (lane%column == column_number .and. .not. abs(lane%dt - x%h(l)) > 0.0_wp) then
             call ground_from_lane(x, l, lane%state)
             call restart_state(lane%state)
             call lane%stepper%restart()
          else
             call create_run(batch, l, column, task, error)
             if (allocated(error)) return
-            lane%column = place
+            lane%column = column_number
             lane%dt = x%h(l)
          end if
          call lane%state%monitor%watch_for(column%watch, column%states)

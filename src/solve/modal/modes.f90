@@ -394,11 +394,11 @@ contains
    end function frequency
 
    !> Mode j.
-   subroutine find(self, j, place, squares, shapes)
+   subroutine find(self, j, column, squares, shapes)
       class(mode_search), intent(inout) :: self
       integer, intent(in) :: j
-      !> Its index in the arrays, after the modes below it
-      integer, intent(in) :: place
+      !> Its column in the arrays, after the modes below it
+      integer, intent(in) :: column
       !> Squares of the frequencies, and shapes of unit modal mass (unknowns, as many)
       real(wp), intent(inout), contiguous :: squares(:), shapes(:, :)
       real(wp) :: change, last_change, rho, shift
@@ -439,8 +439,8 @@ contains
          astray = .not. (rho > self%low(j) .and. rho < self%high(j)) .or. step > most_steps
          last_change = change
       end do
-      shapes(:, place) = shapes(:, place)/sqrt(self%dynamic%mass_product(self%x, self%x))
-      squares(place) = min(max(rho, self%low(j)), self%high(j))
+      shapes(:, column) = shapes(:, column)/sqrt(self%dynamic%mass_product(self%x, self%x))
+      squares(column) = min(max(rho, self%low(j)), self%high(j))
 
    contains
 
@@ -450,12 +450,12 @@ contains
          real(wp) :: share
          integer :: i
 
-         associate (dynamic => self%dynamic, d => shapes(:, place))
+         associate (dynamic => self%dynamic, d => shapes(:, column))
             call dynamic%solve(self%x, d)
             d = scale(1.0_wp, -exponent(maxval(abs(d))))*d
             call dynamic%motion(d, self%x)
-            do i = place - 1, 1, -1
-               if (i < place - neighbours .and. squares(i) < (1.0_wp - close_by)*shift) exit
+            do i = column - 1, 1, -1
+               if (i < column - neighbours .and. squares(i) < (1.0_wp - close_by)*shift) exit
                call dynamic%motion(shapes(:, i), self%other)
                share = dynamic%mass_product(self%other, self%x)
                self%x = self%x - share*self%other

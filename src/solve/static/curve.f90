@@ -181,7 +181,7 @@ contains
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i, side
       real(wp), intent(in) :: finish
-      real(wp) :: c(4), turn(2), allowance
+      real(wp) :: c(4), peak(2), allowance
 
       passes = .false.
       c = cubic_of(self, i)
@@ -190,21 +190,21 @@ contains
           .not. abs(finish) < unbounded) return
       allowance = no_overshoot*(abs(c(2)) + abs(c(2) - c(1)))
       if (i > size(self%near%q)) allowance = allowance + self%digits
-      turn = cubic_at(turns_of(c), c(1), c(2), c(3), c(4))
+      peak = cubic_at(turns_of(c), c(1), c(2), c(3), c(4))
       passes = side*(c(2) - finish) > allowance .or. &
-               any(side*(turn - finish) > max(allowance, on_the_end*abs(finish)))
+               any(side*(peak - finish) > max(allowance, on_the_end*abs(finish)))
    end function passes
 
    !> Whether a spring on a one-way line turns back and turns again between the ends.
    pure logical function hides_turn(self, i, one_way)
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i, one_way
-      real(wp) :: c(4), share(2), turn(2)
+      real(wp) :: c(4), share(2), peak(2)
 
       c = cubic_of(self, i)
       share = turns_of(c)
-      turn = cubic_at(share, c(1), c(2), c(3), c(4))
-      hides_turn = share(2) < 1.0_wp .and. one_way*(turn(1) - turn(2)) > no_motion*max(abs(c(1)), abs(c(2)))
+      peak = cubic_at(share, c(1), c(2), c(3), c(4))
+      hides_turn = share(2) < 1.0_wp .and. one_way*(peak(1) - peak(2)) > no_motion*max(abs(c(1)), abs(c(2)))
    end function hides_turn
 
    !> Deformation of a spring at both ends, and its slopes there by the share of the parameter.

@@ -306,22 +306,22 @@ contains
       class(curved_path), intent(in) :: self
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: place, weakest
+      character(len=:), allocatable :: state, weakest
 
-      place = trim(state_of(self))
+      state = trim(state_of(self))
       weakest = ' ('//trim(weakest_spring(self))//' has the least stiffness left). The path up to there '// &
                 'is kept'
       if (self%equilibrium%varies) then
-         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place//' and the '// &
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state//' and the '// &
                           'axial load '//to_text(self%current%axial_load)//' N on the way to '// &
                           to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
                           'or has lost its capacity there'//weakest//'; use a dynamic analysis to go on')
       else if (self%by_force) then
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)//' N is beyond '// &
-                          'the capacity of the column: no stable equilibrium was found beyond '//place// &
+                          'the capacity of the column: no stable equilibrium was found beyond '//state// &
                           weakest//'; drive the column by displacement, or stiffen the springs')
       else
-         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place// &
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state// &
                           ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &
                           'the top has come as far as its length lets it'//weakest// &
                           '; a driven top cannot follow that, use a dynamic analysis')

@@ -23,10 +23,10 @@ module rbs_solve_static_curved_search
    real(wp), parameter :: arrived = 1.0e-10_wp, no_progress = 1.0e-7_wp
    integer, parameter :: most_iterations = 15
 
-   !> Largest correction by slopes of the work of a stride under a constant axial load, and the most missing
+   !> Largest correction by slopes of the work of a stride under a constant axial load, and the largest residual
    !> from its works under one that varies, with exact rotations and without; as shares of the largest energy
    !> so far.
-   real(wp), parameter :: most_correction = 1.0e-5_wp, most_missing(2) = [1.0e-12_wp, 1.0e-13_wp]
+   real(wp), parameter :: most_correction = 1.0e-5_wp, largest_residual(2) = [1.0e-12_wp, 1.0e-13_wp]
 
    type, abstract, extends(static_path) :: curve_search
       type(curved_equilibrium) :: equilibrium
@@ -193,7 +193,7 @@ contains
       !> Whether they are exact enough
       logical, intent(out) :: done
       real(wp) :: work(2), change(size(self%current%q)), f(size(self%current%q)), lift(2), weight(2)
-      real(wp) :: missing, turnover
+      real(wp) :: residual, turnover
       integer :: j
 
       associate (current => self%current, trial => self%trial)
@@ -225,9 +225,9 @@ contains
             end if
          end do
          turnover = sum(abs(change*f)) + sum(abs(works))
-         missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
-         done = .not. strict .or. abs(missing) <= max(self%most_work, turnover) &
-                *most_missing(merge(1, 2, self%structure%kinematics == finite)) &
+         residual = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
+         done = .not. strict .or. abs(residual) <= max(self%most_work, turnover) &
+                *largest_residual(merge(1, 2, self%structure%kinematics == finite)) &
                 + round_off*(abs(trial%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
       end associate
    end subroutine find_works

@@ -606,9 +606,9 @@ contains
       end if
       force_correction = -r(p)/arm(p)
       correction = flexible/arm*(r/arm + force_correction)
-      associate (missing => residual - sum(arm*correction))
-         correction = correction + rate*missing
-         force_correction = force_correction + force_rate*missing
+      associate (displacement_error => residual - sum(arm*correction))
+         correction = correction + rate*displacement_error
+         force_correction = force_correction + force_rate*displacement_error
       end associate
    end subroutine follow_diagonal
 

@@ -396,23 +396,23 @@ contains
       end do
    end subroutine measure_all
 
-   !> The largest product of two numbers in given places, in size. Where no spring is a layer, all are.
-   pure real(wp) function largest(place, a, b)
-      integer, intent(in), contiguous :: place(:)
+   !> The largest product of two numbers of given numbers, in size. Where no spring is a layer, all are.
+   pure real(wp) function largest(chosen, a, b)
+      integer, intent(in), contiguous :: chosen(:)
       real(wp), intent(in), contiguous :: a(:), b(:)
       integer :: i
 
       largest = 0.0_wp
-      if (size(place) == 0) return
-      if (place(size(place)) == size(place)) then
+      if (size(chosen) == 0) return
+      if (chosen(size(chosen)) == size(chosen)) then
          !$omp simd reduction(max:largest)
-         do i = 1, size(place)
+         do i = 1, size(chosen)
             largest = max(largest, abs(a(i)*b(i)))
          end do
          return
       end if
-      do i = 1, size(place)
-         largest = max(largest, abs(a(place(i))*b(place(i))))
+      do i = 1, size(chosen)
+         largest = max(largest, abs(a(chosen(i))*b(chosen(i))))
       end do
    end function largest
 

@@ -11,9 +11,9 @@ module rbs_solve_time_pair45
 
    integer, parameter :: stages = 7
 
-   !> Places of the stages, and their coefficients row by row (J. R. Dormand, P. J. Prince, A family of
-   !> embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M).
-   real(wp), parameter :: place(stages) = [0.0_wp, 0.2_wp, 0.3_wp, 0.8_wp, 8.0_wp/9.0_wp, 1.0_wp, 1.0_wp]
+   !> Times of the stages in shares of the step, and their coefficients row by row (J. R. Dormand, P. J. Prince,
+   !> A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M).
+   real(wp), parameter :: time_share(stages) = [0.0_wp, 0.2_wp, 0.3_wp, 0.8_wp, 8.0_wp/9.0_wp, 1.0_wp, 1.0_wp]
    real(wp), parameter :: row(stages - 1, stages) = reshape([ &
       [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
       [0.2_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
@@ -71,7 +71,7 @@ contains
       self%of_loads = h*row(1, stages)*self%load_power
       self%of_damping = h*row(1, stages)*self%damping_power
       do stage = 2, stages - 1
-         call state%loads%at_time(state%time + place(stage)*h, load)
+         call state%loads%at_time(state%time + time_share(stage)*h, load)
          call reach_stage(self, state, stage, h, load)
          call find_powers(self, state, load, of_loads, of_damping)
          self%of_loads = self%of_loads + h*row(stage, stages)*of_loads

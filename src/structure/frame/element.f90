@@ -245,18 +245,18 @@ contains
       !> Whether the motion of the ends determines that inside: the element does not snap back; whether
       !> springs without stiffness share a motion
       logical, intent(out) :: stable, shares
-      real(wp) :: of_ends(2, 2), turn(2, m), open_up(n)
+      real(wp) :: of_ends(2, 2), of_rotations(2, m), open_up(n)
       logical :: stable_along
 
       call bend(size(element%share, 2), m, element%share, [k0(:m), rest_of(element)], &
-                [k(:m), rest_of(element)], of_ends, turn, bent, stable, shares)
+                [k(:m), rest_of(element)], of_ends, of_rotations, bent, stable, shares)
       call elongate(n, element%rest_along, k0(m + 1:), k(m + 1:), stiffness(1, 1), open_up, opened, &
                    stable_along)
       stiffness(2:, 1) = 0.0_wp
       stiffness(1, 2:) = 0.0_wp
       stiffness(2:, 2:) = of_ends
       rate = 0.0_wp
-      rate(2:, :m) = turn
+      rate(2:, :m) = of_rotations
       rate(1, m + 1:) = open_up
       stable = stable .and. stable_along
    end subroutine find_tangent

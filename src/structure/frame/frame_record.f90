@@ -301,8 +301,8 @@ contains
 
       call v%word('name', self%name, 'name of the node; one of the grid gets the rest in addition', &
                   required=.true.)
-      call v%key('x', self%x, 'm', any_number, 'place to the right', optional=.true.)
-      call v%key('y', self%y, 'm', any_number, 'place above the ground', optional=.true.)
+      call v%key('x', self%x, 'm', any_number, 'position to the right', optional=.true.)
+      call v%key('y', self%y, 'm', any_number, 'height above the ground', optional=.true.)
       call v%key('floor', self%floor, '', any_number, 'floor of a node outside of the grid, from 0 at '// &
                  'the base; -1: none')
       call v%word('support', self%support, 'what holds it: a roller only along y, a pin along x and y', &
