@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rbsdem.run.bands import Place
-from rbsdem.run.bands import between as place_between
+from rbsdem.run.bands import Features
+from rbsdem.run.bands import between as features_between
 
 #: What bands and intervals are to hold.
 LEVEL = 0.8
@@ -22,7 +22,7 @@ class Numbers(NamedTuple):
 
     Attributes
     ----------
-    near : Place
+    near : Features
         How near the model is to its shear strength, and how slender the column is.
     logs : dict of str to float
         ln of test over model. Of a drift at loss that the model does not come to along the path,
@@ -31,7 +31,7 @@ class Numbers(NamedTuple):
         Whether the model does not lose its strength along the path, so that there is no upper end.
     """
 
-    near: Place
+    near: Features
     logs: dict[str, float]
     beyond: bool
 
@@ -52,7 +52,7 @@ def parts(near: np.ndarray) -> tuple[np.ndarray, ...]:
 def between(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Return numbers between those of the three parts, shape (tests, ...)."""
     one = (-1, *(1 for _ in ends.shape[1:]))
-    return place_between(ends, Place(near[:, 0].reshape(one), near[:, 1].reshape(one)))
+    return features_between(ends, Features(near[:, 0].reshape(one), near[:, 1].reshape(one)))
 
 
 def weights(series: np.ndarray) -> np.ndarray:

@@ -50,7 +50,7 @@ from spread_quantiles import LEVEL, Numbers, Points, Ratios, between, weights
 from rbsdem import peer
 from rbsdem.curves.metrics import PathPoints, secant_stiffness
 from rbsdem.run.bands import (
-    Place,
+    Features,
     Scatter,
     half_band,
     near_shear,
@@ -116,7 +116,7 @@ def _numbers(task: tuple[int, int | np.ndarray | None]) -> Numbers:
         known = value > 0 and theirs[name] > 0
         logs[name] = math.log(theirs[name] / value) if known else math.nan
     near = near_shear(column, float(np.max(np.abs(force))))
-    return Numbers(Place(near, slender(height, case.specimen.depth)), logs, beyond)
+    return Numbers(Features(near, slender(height, case.specimen.depth)), logs, beyond)
 
 
 class Band(NamedTuple):

@@ -189,9 +189,9 @@ def strengths(specimens: list[peer.Specimen]) -> None:
         logs = []
         for s in specimens:
             if s.kind == kind and (kind.endswith(" Shear") or s.axial_load_ratio < 0.5):
-                place = peer.draw(s).section, s.length, s.axial_load
+                hinge = peer.draw(s).section, s.length, s.axial_load
                 force = np.max(np.abs(s.test().force))
-                law = [shear_strength_mcft(*place, arch=k) for k in (1.0, arch_factor(*place))]
+                law = [shear_strength_mcft(*hinge, arch=k) for k in (1.0, arch_factor(*hinge))]
                 logs.append(np.log(force / np.array(law)))
         mean, sd = np.exp(np.mean(logs, axis=0)), np.std(logs, axis=0)
         cells = [f"{a:.2f}, {b:.3f}" for a, b in zip(mean, sd, strict=True)]

@@ -115,7 +115,7 @@ class NumberTable:
         return "columns " + ", ".join(f"{i} {name!r}" for i, name in enumerate(self.names, 1))
 
     def find(self, quantity: str, but: Sequence[str] = ()) -> int | None:
-        """Return the place of the only column of numbers that has the name of a quantity, or None.
+        """Return the index of the only column of numbers that has the name of a quantity, or None.
 
         A word of one letter names a column only if it stands alone or before its unit. `but` are
         words that the name must not have.
@@ -133,8 +133,8 @@ class NumberTable:
                 return named[0]
         return None
 
-    def place(self, value: object, what: str) -> int:
-        """Return the place of a column that a user names, or counts from 1; `what` it is for."""
+    def index_of(self, value: object, what: str) -> int:
+        """Return the index of a column that a user names, or counts from 1; `what` it is for."""
         if isinstance(value, str):
             word = value.strip().lower()
             names = [name.lower() for name in self.names]

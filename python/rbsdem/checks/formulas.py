@@ -162,8 +162,8 @@ def quantities(section: Section, height: float, axial_load: float) -> Quantities
         round=round_section,
         width=1e3 * section.width,
         depth=1e3 * depth,
-        d=1e3 * (section.effective_depth if round_section else 0.5 * depth + _mean(pulled, _place)),
-        d2=1e3 * (0.5 * depth + _mean(pressed, _place)),
+        d=1e3 * (section.effective_depth if round_section else 0.5 * depth + _mean(pulled, _y)),
+        d2=1e3 * (0.5 * depth + _mean(pressed, _y)),
         span=1e3 * span,
         load=load,
         fc=section.concrete_law["fc"] / _MPA,
@@ -194,8 +194,8 @@ _Parts = list[tuple[Bar, float]]
 
 def _rows(section: Section) -> tuple[list[float], list[float], list[float]]:
     """Return the share of each bar in the rows in tension and in compression, and in the web."""
-    places = [_place(bar) for bar in section.bars]
-    low, high = min(places), max(places)
+    heights = [bar[0] for bar in section.bars]
+    low, high = min(heights), max(heights)
     if high - low <= 0.1 * section.depth:
         raise InputError("code values: the section needs bars near both faces")
 
@@ -203,12 +203,12 @@ def _rows(section: Section) -> tuple[list[float], list[float], list[float]]:
         near, far = _ROW
         return min(max((far - distance / (high - low)) / (far - near), 0.0), 1.0)
 
-    pulled = [share(high - y) for y in places]
-    pressed = [share(y - low) for y in places]
+    pulled = [share(high - y) for y in heights]
+    pressed = [share(y - low) for y in heights]
     return pulled, pressed, [1.0 - a - b for a, b in zip(pulled, pressed, strict=True)]
 
 
-def _place(bar: Bar) -> float:
+def _y(bar: Bar) -> float:
     return bar[0]
 
 

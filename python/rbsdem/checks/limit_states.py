@@ -82,7 +82,7 @@ class Criterion:
     opening: float = 0.0
 
     def values(self, result: Response, at: int) -> Array:
-        """Return the values that the threshold bounds, shape (rows,); `at` is the joint's place."""
+        """Return the values that the threshold bounds, shape (rows,); `at` is the joint index."""
         if self.slip:
             return np.asarray(self.slip * result.slip[:, at])
         turned = result.rotation[:, at]
@@ -187,7 +187,7 @@ def thresholds(column: Structure, found: Sequence[Criterion], states: Iterable[i
         The number of the limit state of each.
     """
     # The rows of a run count the joints from the ground, a footing's included.
-    at = {joint: place for place, joint in enumerate(column.joint_numbers, 1)}
+    at = {joint: index for index, joint in enumerate(column.joint_numbers, 1)}
     rows = [
         (state, at[c.joint], c.slip, c.rotation, c.opening, c.threshold)
         for state, c in zip(states, found, strict=True)
@@ -273,7 +273,7 @@ def _of_bars(
     outer: dict[tuple[float, float, float], list[float]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
     layers_of_bars = [(y, over) for (y, _), part, over in rows if part == "bar"]
-    # They are in the order of the bars: at one place there may be bars of several steels.
+    # They are in the order of the bars: at one height there may be bars of several steels.
     for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
     for (yields, breaks, over), places in outer.items():
@@ -338,10 +338,10 @@ def _of_frame(result: Any) -> dict[str, LimitState]:
     for event in path.events:
         name = _EVENTS.get((event.group.replace("panel", "flexure"), event.name), "")
         if name and name not in first:
-            place = float(np.interp(event.time, path.time, np.arange(path.time.size)))
+            row = float(np.interp(event.time, path.time, np.arange(path.time.size)))
             source = f"{event.group} of {event.member} {event.end}".rstrip()
             where = {key: getattr(event, key) for key in ("member", "group", "end", "side")}
-            first[name] = replace(_state(result, name, place, math.nan, source), **where)
+            first[name] = replace(_state(result, name, row, math.nan, source), **where)
     return first
 
 
@@ -352,11 +352,11 @@ def _of_column(result: Response) -> dict[str, LimitState]:
     if any(criterion.opening for criterion in watched):
         path._check_openings()
     first: dict[str, LimitState] = {}
-    for place, criterion in enumerate(watched):
+    for number, criterion in enumerate(watched):
         if result.reached is None:
             found = _in_rows(result, path, criterion, joints.index(criterion.joint))
         else:
-            found = _in_time(result, criterion, *result.reached[place])
+            found = _in_time(result, criterion, *result.reached[number])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
             first[found.name] = found
     return first
@@ -368,8 +368,8 @@ def _in_time(
     """Return the limit state that the steps of an analysis in time have reached."""
     if math.isnan(time):
         return None
-    place = float(np.interp(time, result.time, np.arange(result.time.size)))
-    state = _state(result, criterion.name, place, criterion.threshold, criterion.source)
+    row = float(np.interp(time, result.time, np.arange(result.time.size)))
+    state = _state(result, criterion.name, row, criterion.threshold, criterion.source)
     at = float(displacement)
     return replace(state, time=float(time), displacement=at, drift=at / result.structure.height)
 
@@ -379,21 +379,21 @@ def _in_rows(result: Response, path: Response, criterion: Criterion, at: int) ->
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
         return None
-    place = float(rows[0])
+    row = float(rows[0])
     if rows[0] > 0:
         before, there = values[rows[0] - 1 : rows[0] + 1]
-        place += (threshold - there) / (there - before)
-    return _state(result, criterion.name, place, threshold, criterion.source)
+        row += (threshold - there) / (there - before)
+    return _state(result, criterion.name, row, threshold, criterion.source)
 
 
 def _losses(result: Rows) -> list[LimitState]:
     """Return where a fifth of the strength of a side is lost first, as the comparison has it."""
     path = result.path
-    place, loss = strength_loss_point(path.displacement, path.loop_force, share=_LOSS)
-    if math.isnan(place):
+    row, loss = strength_loss_point(path.displacement, path.loop_force, share=_LOSS)
+    if math.isnan(row):
         return []
     source = "20 % of the largest force of a side, on its envelope"
-    state = _state(result, "strength_loss", place, _LOSS, source)
+    state = _state(result, "strength_loss", row, _LOSS, source)
     at = math.copysign(loss, state.displacement)
     return [replace(state, displacement=at, drift=at / result.structure.height)]
 
@@ -418,17 +418,17 @@ def _axial_failure(result: Rows, first: dict[str, LimitState]) -> list[LimitStat
     return [_state(result, "axial_failure", float(rows[0]), limit, source)]
 
 
-def _state(result: Rows, name: str, place: float, threshold: float, source: str) -> LimitState:
+def _state(result: Rows, name: str, row: float, threshold: float, source: str) -> LimitState:
     """Return the state at a row of the path, or between two with the share of the way."""
     path = result.path
     rows = np.arange(path.time.size)
     time, displacement, force = (
-        float(np.interp(place, rows, values))
+        float(np.interp(row, rows, values))
         for values in (path.time, path.displacement, path.loop_force)
     )
     # Round-off of a time that is one of the rows does not take the next one.
-    row = np.searchsorted(result.time, time - 1e-12 * abs(time))
-    at, drift = min(int(row), result.time.size - 1), displacement / result.structure.height
+    after = np.searchsorted(result.time, time - 1e-12 * abs(time))
+    at, drift = min(int(after), result.time.size - 1), displacement / result.structure.height
     return LimitState(name, at, time, displacement, drift, force, threshold, source)
 
 

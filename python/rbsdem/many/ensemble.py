@@ -606,9 +606,9 @@ class _TaskSizer:
 
 def _of_part(runs: int, part: tuple[int, int]) -> NDArray[np.int_]:
     """Return the runs of part i of n, drawn so that each has long and short ones."""
-    place, parts = (1, 1) if isinstance(part, Share) else part
+    number, parts = (1, 1) if isinstance(part, Share) else part
     drawn = np.random.default_rng(1).permutation(runs)
-    return np.sort(drawn[place - 1 :: parts])
+    return np.sort(drawn[number - 1 :: parts])
 
 
 def _told(found: Ensemble, store: Any) -> str:
@@ -640,8 +640,8 @@ def checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     if shard is None:
         return 1, 1
     try:
-        place, parts = (_arguments.integer(number, "shard") for number in shard)
-        if not 1 <= place <= parts:
+        number, parts = (_arguments.integer(part, "shard") for part in shard)
+        if not 1 <= number <= parts:
             raise ValueError
     except (InputError, TypeError, ValueError):
         faults.append(
@@ -650,7 +650,7 @@ def checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
         return 1, 1
     if store is None:
         faults.append("shard: parts come together in a store; give store=")
-    return place, parts
+    return number, parts
 
 
 def _named(names: tuple[str, ...], result: Outcome, plan: Plan) -> dict[str, Array]:

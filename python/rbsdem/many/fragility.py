@@ -73,9 +73,9 @@ class Hazard:
         """Return the mean annual frequency with which intensities are exceeded."""
         u = np.log(_arguments.vector(intensity, "intensity", shape="any"))
         x, y = np.log(self.intensities), np.log(self.frequencies)
-        place = np.clip(np.searchsorted(x, u) - 1, 0, x.size - 2)
+        i = np.clip(np.searchsorted(x, u) - 1, 0, x.size - 2)
         slope = np.diff(y) / np.diff(x)
-        return np.asarray(np.exp(y[place] + slope[place] * (u - x[place])))
+        return np.asarray(np.exp(y[i] + slope[i] * (u - x[i])))
 
     def intensity(self, exceedance: str | float | tuple[float, float]) -> float:
         """Return the intensity that is exceeded with a probability or as often as is said.
@@ -99,9 +99,9 @@ class Hazard:
         """
         rate = _annual_frequency(exceedance)
         x, y = np.log(self.intensities), np.log(self.frequencies)
-        place = int(np.clip(np.searchsorted(-y, -np.log(rate)) - 1, 0, x.size - 2))
-        slope = (x[place + 1] - x[place]) / (y[place + 1] - y[place])
-        found = float(np.exp(x[place] + slope * (np.log(rate) - y[place])))
+        i = int(np.clip(np.searchsorted(-y, -np.log(rate)) - 1, 0, x.size - 2))
+        slope = (x[i + 1] - x[i]) / (y[i + 1] - y[i])
+        found = float(np.exp(x[i] + slope * (np.log(rate) - y[i])))
         if not self.frequencies[-1] <= rate <= self.frequencies[0]:
             warn(
                 f"hazard: a frequency of {rate:.4g} a year is beyond its points "

@@ -249,13 +249,13 @@ class IDA(WithFragility):
         Parameters
         ----------
         motion, column : str or int
-            Name, or place from 0.
+            Name, or number from 0.
         edp : str, optional
             Measure of the response, by default `Runs.drift`; it is infinite where the column
             collapsed.
         """
-        c = _place(column, list(self.runs.columns), "column")
-        m = _place(motion, list(self.runs.motions), "motion")
+        c = _index(column, list(self.runs.columns), "column")
+        m = _index(motion, list(self.runs.motions), "motion")
         return self._curve(c, m, self.runs.response(edp or self.runs.drift))
 
     def fractiles(
@@ -456,7 +456,7 @@ def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tupl
     return (low + part * (high - low),) * 2
 
 
-def _place(key: str | int, names: list[Any], what: str) -> int:
+def _index(key: str | int, names: list[Any], what: str) -> int:
     if key in names:
         return names.index(key)
     if isinstance(key, int) and 0 <= _arguments.integer(key, what) < len(names):

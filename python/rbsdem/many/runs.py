@@ -445,11 +445,11 @@ def own_records(motions: dict[str, GroundMotion], options: RunOptions) -> dict[s
     if shard is None:
         return motions
     faults: list[str] = []
-    place, parts = checked_part(shard, options.get("store"), faults)
+    number, parts = checked_part(shard, options.get("store"), faults)
     if not faults and parts > len(motions):
         faults.append(f"shard: {parts} parts of {len(motions)} motions; a part has one or more")
     _arguments.raise_faults(faults)
-    return dict(list(motions.items())[place - 1 :: parts])
+    return dict(list(motions.items())[number - 1 :: parts])
 
 
 def drift_of(structures: Iterable[Structure]) -> str:

@@ -174,10 +174,10 @@ class Store:
             with self._alone():
                 self._lock(self._part, stack)
                 for path in self.folder.glob(_PART.format("*", "*")):
-                    place, parts = map(int, re.findall(r"\d+", path.name))
+                    number, parts = map(int, re.findall(r"\d+", path.name))
                     if parts != self._part[1]:
                         with ExitStack() as moment:
-                            self._lock((place, parts), moment)
+                            self._lock((number, parts), moment)
                 # Files that an earlier process of this part has begun and not finished.
                 for path in self._shards.glob(f"{self._prefix}*.partial"):
                     with suppress(OSError):

@@ -420,9 +420,9 @@ def _neighbours(
     """Return the tests that are most like a specimen, predicted; `known` keeps predictions."""
     with unwarned():
         section = draw(specimen).section
-    place = section, specimen.length, specimen.axial_load
+    hinge = section, specimen.length, specimen.axial_load
     near: list[Neighbour] = []
-    for one in nearest(*place, tests, max(len(tests), 1), but=specimen):
+    for one in nearest(*hinge, tests, max(len(tests), 1), but=specimen):
         own = one.prediction or known.get(one.specimen)
         if own is None:
             (own,) = predict([one.specimen], model, **options)

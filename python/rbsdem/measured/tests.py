@@ -645,7 +645,7 @@ def _columns(given: object, table: NumberTable) -> tuple[int, int]:
     places = [
         table.find(quantity, _NOT[quantity])
         if value is None
-        else table.place(value, f"columns: {quantity}")
+        else table.index_of(value, f"columns: {quantity}")
         for value, quantity in zip(pair, _QUANTITIES, strict=True)
     ]
     numbers = [i for i in range(table.columns) if i not in table.texts]

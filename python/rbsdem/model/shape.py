@@ -278,8 +278,8 @@ class Section(_Fields, ABC):
     @cached_property
     def mirrored(self) -> Self:
         """The section upside down: y > 0 is what was y < 0. Itself where that is the same."""
-        mirrored = sorted(((-y, area, steel) for y, area, steel in self.bars), key=_place)
-        pairs = zip(mirrored, sorted(self.bars, key=_place), strict=True)
+        mirrored = sorted(((-y, area, steel) for y, area, steel in self.bars), key=_by_height)
+        pairs = zip(mirrored, sorted(self.bars, key=_by_height), strict=True)
         slack, turned = 1e-9 * self.depth, self._turned()
         if all(abs(a[0] - b[0]) <= slack and a[1:] == b[1:] for a, b in pairs):
             return replace(self, **turned) if turned else self
@@ -818,7 +818,7 @@ def checked_section(section: object) -> Section:
     )
 
 
-def _place(bar: Bar) -> tuple[float, float, float]:
+def _by_height(bar: Bar) -> tuple[float, float, float]:
     """Return by what bars are ordered; heights that differ by round-off are one."""
     y, area, steel = bar
     return round(y, 9), area, steel.fy

@@ -501,7 +501,7 @@ def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, 
     # ACCELERATION TIME SERIES is no time.
     time = None if time == found else time
     if column is not None:
-        value = table.place(column, "column")
+        value = table.index_of(column, "column")
         if time is None and not any(table.names) and value > 0 and _ascends(table.values[:, 0]):
             time = 0
     elif not any(table.names):

@@ -334,10 +334,10 @@ def band(
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
-    place = Place(near, slender(column.height, column._drawing.section.depth))
+    features = Features(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
     wider, *powers = scatter.outside if column.warnings else (1.0, 1.0, 1.0, 1.0)
-    widen = wider * between(scatter.force, place)
+    widen = wider * between(scatter.force, features)
     values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
     return Band(
@@ -347,12 +347,12 @@ def band(
         lower=force - widen * down,
         upper=force + widen * up,
         samples=sampled,
-        peak_force=_interval(values["peak"], scatter.peak, place, powers[0]),
+        peak_force=_interval(values["peak"], scatter.peak, features, powers[0]),
         energy=_interval(
-            values["energy"], scatter.energy, place, powers[1], scale=_LEAST_WORK * moved
+            values["energy"], scatter.energy, features, powers[1], scale=_LEAST_WORK * moved
         ),
         drift_at_loss=_interval(
-            values["drift"], scatter.drift, place, powers[2], float(np.max(np.abs(d))) / height
+            values["drift"], scatter.drift, features, powers[2], float(np.max(np.abs(d))) / height
         ),
         near_shear=near,
         warnings=warnings,
@@ -454,7 +454,7 @@ def near_shear(column: Column, peak: float) -> float:
     return min(max((peak / strength - low) / (high - low), 0.0), 1.0)
 
 
-class Place(NamedTuple):
+class Features(NamedTuple):
     """How near a column is to its shear strength, and how slender it is, both 0 to 1."""
 
     near: float
@@ -473,16 +473,16 @@ def slender(span: float, depth: float) -> float:
     return min(max((span / depth - low) / (high - low), 0.0), 1.0)
 
 
-def between(ends: Sequence[Any], place: Place) -> Any:
-    """Return the number at a place: far from the shear strength; at it, squat; at it, slender."""
+def between(ends: Sequence[Any], features: Features) -> Any:
+    """Return the number of features: far from the shear strength; at it, squat; at it, slender."""
     far, squat, tall = ends
-    return far + place.near * (squat + place.slender * (tall - squat) - far)
+    return far + features.near * (squat + features.slender * (tall - squat) - far)
 
 
 def _interval(
     value: float,
     factors: Sequence[tuple[float, float]],
-    place: Place,
+    features: Features,
     power: float,
     least: float = math.nan,
     scale: float = 0.0,
@@ -493,7 +493,7 @@ def _interval(
     come near zero is not known the better for it. Outside the range of the tests the logarithms of
     the factors are larger by `power`.
     """
-    lower, upper = (between(ends, place) ** power for ends in zip(*factors, strict=True))
+    lower, upper = (between(ends, features) ** power for ends in zip(*factors, strict=True))
     if math.isnan(value):
         # No more is known than that it lies beyond, as far as the model is right.
         return Interval(min(lower, 1.0) * least, value, math.inf)

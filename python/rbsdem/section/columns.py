@@ -343,8 +343,8 @@ def _layered(
 ) -> LayeredColumn:
     if n == 1:
         raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
-    place = section, height, axial_load, n or 2
-    drawing = LayeredModel(*place, _known(model_parameters), restrained, round_core)
+    hinge = section, height, axial_load, n or 2
+    drawing = LayeredModel(*hinge, _known(model_parameters), restrained, round_core)
     if model_parameters is not None and model_parameters.version == VERSION:
         # Those of another version are meant for all columns: what a column limits is limited.
         drawing.check(model_parameters.own)

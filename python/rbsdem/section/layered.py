@@ -85,15 +85,15 @@ class LayeredModel:
     @cached_property
     def joint(self) -> HingeJoint:
         """The hinge at the foot."""
-        place = self.section, self.height, self.axial_load
+        hinge = self.section, self.height, self.axial_load
         hoops: Any = {"restrained": self.restrained, "round_core": self.round_core}
-        return hinge_joint(*place, self.parameters, **hoops)
+        return hinge_joint(*hinge, self.parameters, **hoops)
 
     @cached_property
     def shear(self) -> tuple[Pinching, dict[str, tuple[float, float]]]:
         """The shear spring of the foot, and the limits of the parameters that make it."""
-        place, joint = (self.section, self.height, self.axial_load), self.joint
-        return shear_spring(*place, joint.shear_stiffness, self.parameters, joint)
+        hinge, joint = (self.section, self.height, self.axial_load), self.joint
+        return shear_spring(*hinge, joint.shear_stiffness, self.parameters, joint)
 
     @cached_property
     def limits(self) -> dict[str, tuple[float, float]]:

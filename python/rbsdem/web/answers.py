@@ -313,8 +313,8 @@ class Answers:
                 columns.append({"none": "the folder has no tests of such columns"})
                 continue
             try:
-                place = drawn.section, drawn.span, drawn.column.axial_load
-                near = nearest(*place, self.near, _TESTS)
+                hinge = drawn.section, drawn.span, drawn.column.axial_load
+                near = nearest(*hinge, self.near, _TESTS)
             except (RbsdemError, ValueError) as error:
                 columns.append({"none": str(error)})
                 continue

@@ -23,9 +23,9 @@ module rbs_solve_static_curved_search
    real(wp), parameter :: arrived = 1.0e-10_wp, no_progress = 1.0e-7_wp
    integer, parameter :: most_iterations = 15
 
-   !> Largest correction by slopes of the work of a stride under a constant axial load, and the largest residual
-   !> from its works under one that varies, with exact rotations and without; as shares of the largest energy
-   !> so far.
+   !> Largest correction by slopes of the work of a stride under a constant axial load, and the largest
+   !> residual of its works under one that varies, with exact rotations and without; as shares of the largest
+   !> energy so far.
    real(wp), parameter :: most_correction = 1.0e-5_wp, largest_residual(2) = [1.0e-12_wp, 1.0e-13_wp]
 
    type, abstract, extends(static_path) :: curve_search

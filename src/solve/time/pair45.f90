@@ -11,8 +11,8 @@ module rbs_solve_time_pair45
 
    integer, parameter :: stages = 7
 
-   !> Times of the stages in shares of the step, and their coefficients row by row (J. R. Dormand, P. J. Prince,
-   !> A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M).
+   !> Times of the stages in shares of the step, and their coefficients row by row (J. R. Dormand, P. J.
+   !> Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M).
    real(wp), parameter :: time_share(stages) = [0.0_wp, 0.2_wp, 0.3_wp, 0.8_wp, 8.0_wp/9.0_wp, 1.0_wp, 1.0_wp]
    real(wp), parameter :: row(stages - 1, stages) = reshape([ &
       [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &

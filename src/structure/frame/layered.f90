@@ -223,34 +223,34 @@ contains
       real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1), terms(3)
       real(wp), intent(in) :: share
       real(wp), intent(inout) :: dd(m)
-      real(wp) :: s(3), opening, angle
+      real(wp) :: s(3), opening, tilt
       integer :: j
 
       s = abs(stiffness(:, 1))*terms(1) + abs(stiffness(:, 2))*terms(2) + abs(stiffness(:, 3))*terms(3)
       do j = 1, size(e%first) - 1
          associate (a => e%arm(:, 1, j), b => e%arm(:, 2, j), of => e%first(j), last => e%first(j + 1) - 1)
             opening = abs(soft(1, j))*sum(abs(a)*s)
-            angle = abs(soft(3, j))*sum(abs(soft(4:, j))*s)
+            tilt = abs(soft(3, j))*sum(abs(soft(4:, j))*s)
             ! However soft a joint is, it moves no more than the ends.
             if (of < last) then
                opening = min(opening, sum(abs(a)*terms))
-               angle = min(angle, sum(abs(b)*terms))
+               tilt = min(tilt, sum(abs(b)*terms))
             end if
-            call drop_below(last - of + 1, e%y(of:last), share*(opening + abs(soft(2, j))*angle), share*angle, &
+            call drop_below(last - of + 1, e%y(of:last), share*(opening + abs(soft(2, j))*tilt), share*tilt, &
                             dd(of:last))
          end associate
       end do
    end subroutine drop_small_rates
 
-   pure subroutine drop_below(n, y, opening, angle, dd)
+   pure subroutine drop_below(n, y, opening, tilt, dd)
       integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), opening, angle
+      real(wp), intent(in) :: y(n), opening, tilt
       real(wp), intent(inout) :: dd(n)
       integer :: i
 
       !$omp simd
       do i = 1, n
-         dd(i) = merge(0.0_wp, dd(i), abs(dd(i)) < opening + abs(y(i))*angle)
+         dd(i) = merge(0.0_wp, dd(i), abs(dd(i)) < opening + abs(y(i))*tilt)
       end do
    end subroutine drop_below
 
