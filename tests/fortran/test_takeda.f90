@@ -28,6 +28,7 @@ contains
                unit_test('S3 yielded, full reversals, with work', s3), &
                unit_test('S4 partial unloading, inner loops', s4), &
                unit_test('equality: a turn at zero force leads directly to the other side', turn_at_zero), &
+               unit_test('a turn at zero force without a way beyond it leaves no trace', no_way), &
                unit_test('6000 nested peaks: the oldest are forgotten, without a jump', forgotten_peaks), &
                unit_test('partial unloading does not fill the memory', partial_unloading)]
    end subroutine collect_takeda
@@ -194,6 +195,37 @@ contains
       end do
       call check_true(error, found > 300, 'enough turns')
    end subroutine turn_at_zero
+
+   !> At a corner of a static path a spring is put on the line beyond zero force, and back, where it is.
+   subroutine no_way(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_record) :: spec
+      type(spring_array) :: spring, twin
+      real(wp) :: d(12)
+      integer :: path, j, direction
+
+      do path = 1, 400
+         call random_spring(random, spec)
+         call random_path(random, value_of(spec, 'd_y'), d)
+         call make_springs(spring, [spec])
+         twin = spring
+         do j = 1, size(d)
+            call spring%advance_to(1, d(j))
+            call twin%advance_to(1, d(j))
+            call check_same(error, [twin%force(1)], [spring%force(1)], 'force')
+            if (.not. (spring%includes_lower_end(1) .or. spring%includes_upper_end(1))) cycle
+            if (spring%unload_on_reversal(1) /= 0) cycle
+            direction = merge(1, -1, spring%includes_upper_end(1))
+            call spring%arrive(1, direction)
+            call twin%arrive(1, direction)
+            call twin%leave(1, direction)
+            call twin%leave(1, -direction)
+            call spring%advance_to(1, spring%d(1) - 0.3_wp*direction)
+            call twin%advance_to(1, spring%d(1))
+         end do
+      end do
+   end subroutine no_way
 
    !> Parameters over the whole range on which takeda.md section 3 was tested.
    subroutine random_spring(random, spec)

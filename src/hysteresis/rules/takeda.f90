@@ -337,24 +337,30 @@ contains
       type(takeda_spring), intent(inout) :: spring
       type(point), intent(in) :: end_point
       real(wp) :: k_in
-      integer :: s
 
-      associate (rule => spring%rule, now => spring%now, branch => spring%branch, open => spring%open)
-         s = now%side
-         if (abs(end_point%f) <= no_force*rule%f_y) then
-            call reload_from_inner(spring, -s, end_point)
+      associate (now => spring%now, branch => spring%branch, open => spring%open, at => spring%now%aim%at)
+         if (abs(end_point%f) > no_force*spring%rule%f_y) then
+            now%peaks = now%peaks + 1_int64
+            at = end_point
+            now%aim%side = now%side
+            now%aim%number = now%peaks
+            call open%push(now%aim)
+         else if (abs(end_point%d - now%aim%start) > 0.0_wp) then
+            call reload_from_inner(spring, -now%side, end_point)
+            return
+         else if (open%count > 0) then
+            ! It has not moved since inner unloading reached zero force, which is not passed.
+            now%aim = open%list(open%count)
+            now%side = now%aim%side
+         else
+            now%side = -now%side
+            call unload_from_peak(spring, now%peak(now%side))
             return
          end if
-         now%peaks = now%peaks + 1_int64
-         now%aim%at = end_point
-         now%aim%side = s
-         now%aim%number = now%peaks
-         call open%push(now%aim)
          now%branch = inner_unloading
-         k_in = inner_stiffness(spring, end_point)
-         branch = segment(d0=end_point%d, f0=end_point%f, k=k_in)
-         call branch%lead_outward(s, near=end_point%d - end_point%f/k_in, far=end_point%d, &
-                                  unload_on_reversal=.false.)
+         k_in = inner_stiffness(spring, at)
+         branch = segment(d0=at%d, f0=at%f, k=k_in)
+         call branch%lead_outward(now%side, near=at%d - at%f/k_in, far=at%d, unload_on_reversal=.false.)
       end associate
    end subroutine unload_from_inner_peak
 
