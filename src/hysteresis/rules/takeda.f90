@@ -336,7 +336,6 @@ contains
    subroutine unload_from_inner_peak(spring, end_point)
       type(takeda_spring), intent(inout) :: spring
       type(point), intent(in) :: end_point
-      real(wp) :: k_in
 
       associate (now => spring%now, branch => spring%branch, open => spring%open, at => spring%now%aim%at)
          if (abs(end_point%f) > no_force*spring%rule%f_y) then
@@ -358,19 +357,17 @@ contains
             return
          end if
          now%branch = inner_unloading
-         k_in = inner_stiffness(spring, at)
-         branch = segment(d0=at%d, f0=at%f, k=k_in)
-         call branch%lead_outward(now%side, near=at%d - at%f/k_in, far=at%d, unload_on_reversal=.false.)
+         branch = segment(d0=at%d, f0=at%f, k=inner_stiffness(spring))
+         call branch%lead_outward(now%side, near=at%d - at%f/branch%k, far=at%d, unload_on_reversal=.false.)
       end associate
    end subroutine unload_from_inner_peak
 
-   !> K_in of an inner peak within its bounds, of which the lower one has priority.
-   real(wp) function inner_stiffness(spring, peak) result(k_in)
+   !> K_in of the last inner peak within its bounds, of which the lower one has priority.
+   real(wp) function inner_stiffness(spring) result(k_in)
       type(takeda_spring), intent(inout) :: spring
-      type(point), intent(in) :: peak
       real(wp) :: k_r, distance
 
-      associate (rule => spring%rule, now => spring%now)
+      associate (rule => spring%rule, now => spring%now, peak => spring%now%aim%at)
          k_r = now%k_r(now%side)
          if (.not. k_r > 0.0_wp) k_r = now%k_r(-now%side)
          select case (rule%inner)
