@@ -99,6 +99,6 @@ def unwarned(*kinds: type[Warning]) -> Iterator[None]:
 @contextmanager
 def recorded(kind: type[Warning] = Warning) -> Iterator[list[warnings.WarningMessage]]:
     """Put warnings of a kind into a list instead of telling them."""
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", kind)
-        yield told
+        yield caught

@@ -34,7 +34,7 @@ def beyond(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array,
 
     Returns
     -------
-    place : ndarray, shape (k,)
+    row : ndarray, shape (k,)
         Numbers of the rows, between two rows with the share of the way.
     displacement, force : ndarray, shape (k,)
         There, with the sign that they have to that side [m, N].
@@ -53,30 +53,30 @@ def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
     after = rows[rows > 0]
     share = (so_far[after] - x[after - 1]) / (x[after] - x[after - 1])
     force_there = y[after - 1] + share * (y[after] - y[after - 1])
-    place = np.concatenate((rows.astype(np.float64), after - 1 + share))
+    number = np.concatenate((rows.astype(np.float64), after - 1 + share))
     # Where the row before is one of them, the crossing is that row.
-    place, at = np.unique(place, return_index=True)
+    number, at = np.unique(number, return_index=True)
     return (
-        place,
+        number,
         np.concatenate((x[rows], so_far[after]))[at],
         np.concatenate((y[rows], force_there))[at],
     )
 
 
 def _envelope(x: Array, y: Array, turns: np.ndarray) -> tuple[Array, Array, Array]:
-    places, xs, ys = ([part] for part in _beyond(x, y))
+    numbers, xs, ys = ([part] for part in _beyond(x, y))
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))
     if x.size >= 2:
         for first, last in pairwise([0, *turns.tolist(), x.size - 1]):
             reach = so_far[first + 1]
             if x[first] < x[last] <= reach and x[last] >= _NEARLY * reach:
-                place, at, most = _largest_beyond(x, y, (first, last), _NEARLY * reach)
-                places.append(np.array([place]))
+                row, at, most = _largest_beyond(x, y, (first, last), _NEARLY * reach)
+                numbers.append(np.array([row]))
                 xs.append(np.array([at]))
                 ys.append(np.array([most]))
-    if len(places) == 1:
-        return places[0], xs[0], ys[0]
-    rows, order = np.unique(np.concatenate(places), return_index=True)
+    if len(numbers) == 1:
+        return numbers[0], xs[0], ys[0]
+    rows, order = np.unique(np.concatenate(numbers), return_index=True)
     return rows, np.concatenate(xs)[order], np.concatenate(ys)[order]
 
 
@@ -138,7 +138,7 @@ def strength_loss_point(
 
     Returns
     -------
-    place : float
+    row : float
         Number of the row there, between two rows with the share of the way; where the envelope is
         not the curve itself, that of the next point of the envelope. NaN if there is none.
     displacement : float
@@ -156,12 +156,12 @@ def strength_loss_point(
     sides = [_envelope(side * d, side * f, turns) for side in (1, -1)]
     # A force between the envelopes, as on the way back, is no strength.
     largest = max((np.max(y) for _, _, y in sides if y.size), default=0)
-    for place, x, y in sides:
+    for number, x, y in sides:
         if not y.size or 2 * np.max(y) < largest or not np.max(y) > 0:
             continue
         peak = int(np.argmax(y))
         left = (1 - share) * y[peak]
-        half_cycle = np.searchsorted(turns, place)
+        half_cycle = np.searchsorted(turns, number)
         reached = _still_reached(y, half_cycle)
         lost = np.flatnonzero(reached[peak:] <= left)
         if not lost.size:
@@ -170,10 +170,10 @@ def strength_loss_point(
         # In a half-cycle the force falls on its line; from one to the next, to what that reaches.
         lower = y[at] if half_cycle[at] == half_cycle[at - 1] else reached[at]
         part = (y[at - 1] - left) / (y[at - 1] - lower)
-        way = place[at] - place[at - 1]
-        there = place[at - 1] + part * way if way <= 1 else place[at]
-        if not found[0] <= there:
-            found = float(there), float(x[at - 1] + part * (x[at] - x[at - 1]))
+        apart = number[at] - number[at - 1]
+        found_row = number[at - 1] + part * apart if apart <= 1 else number[at]
+        if not found[0] <= found_row:
+            found = float(found_row), float(x[at - 1] + part * (x[at] - x[at - 1]))
     return found
 
 
@@ -495,8 +495,8 @@ def _asce_41(x: Array, y: Array) -> tuple[float, float, float, float]:
             f"its area up to end = {end:g} m; choose another end or another method"
         )
     lines = [
-        (min(place, end), top, end, last)
-        for place, top in zip(at[good].tolist(), force[good].tolist(), strict=True)
+        (min(knee, end), top, end, last)
+        for knee, top in zip(at[good].tolist(), force[good].tolist(), strict=True)
     ]
     return min(lines, key=lambda each: (_apart(x, y, *each), -each[1]))
 

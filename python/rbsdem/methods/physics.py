@@ -27,7 +27,7 @@ from rbsdem.methods.ladder import (
     StudyCase,
     too_expensive,
 )
-from rbsdem.model.column import PLACES, Column, Damping, bodies, notes_off
+from rbsdem.model.column import SPRING_GROUPS, Column, Damping, bodies, notes_off
 from rbsdem.model.springs import Spring
 from rbsdem.run.accuracy import Answer, errors_of
 from rbsdem.run.solver import IMPLICIT
@@ -399,7 +399,7 @@ def split_bodies(column: Column) -> Column:
         ]
     parts: dict[str, Any] = {"n": 2 * column.n}
     parts |= {name: np.repeat(values, 2) for name, values in halves.items()}
-    for name in PLACES:
+    for name in SPRING_GROUPS:
         springs = [spring.split(2) for spring in column.joints(name) for _ in range(2)]
         parts[name] = springs or None
     return dataclasses.replace(column, **parts)

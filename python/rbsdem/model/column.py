@@ -242,8 +242,8 @@ NOTES_ON: ContextVar[bool] = ContextVar("NOTES_ON", default=True)
 _KEYS = {key["name"]: key for key in _core.keys()["groups"]["column"]}
 #: Bodies of a column at the most.
 MOST_BODIES: int = _KEYS["n"]["most"]
-Place = Literal["shear", "flexure", "axial_spring"]
-PLACES: tuple[Place, ...] = ("shear", "flexure", "axial_spring")
+SpringGroup = Literal["shear", "flexure", "axial_spring"]
+SPRING_GROUPS: tuple[SpringGroup, ...] = ("shear", "flexure", "axial_spring")
 _LISTS = ("lengths", "masses", "rotary_inertia")
 
 
@@ -439,7 +439,7 @@ class Column:
             raise InputError(f"joint = {joint} must be from {numbers[0]} to {last}")
         return numbers.index(joint)
 
-    def joints(self, name: Place) -> tuple[Spring, ...]:
+    def joints(self, name: SpringGroup) -> tuple[Spring, ...]:
         """Return the springs of one kind, one for each of `joint_numbers`.
 
         Parameters
@@ -447,7 +447,7 @@ class Column:
         name : {"shear", "flexure", "axial_spring"}
             Which springs. Without axial springs the result for them is empty.
         """
-        springs = getattr(self, _arguments.choice(name, "joints: name", PLACES))
+        springs = getattr(self, _arguments.choice(name, "joints: name", SPRING_GROUPS))
         if springs is None:
             return ()
         if isinstance(springs, Spring):
@@ -524,7 +524,7 @@ class Column:
             # Two halves side by side, each half its length from the middle of their body.
             middle = 2 * (inertias[-1] + masses[-1] * (lengths[-1] / 2) ** 2)
             changes["rotary_inertia"] = [*inertias[:-1], middle, *inertias[-2::-1]]
-        for name in PLACES:
+        for name in SPRING_GROUPS:
             # The spring of a whole cantilever is one of each half here.
             springs = [part.split(1) if whole_column(part) else part for part in self.joints(name)]
             if springs:
@@ -560,9 +560,8 @@ class Column:
 
 
 #: Fields of a column that are neither springs nor records.
-_OWN = tuple(
-    field.name for field in fields(Column) if field.name not in (*PLACES, "damping", "footing")
-)
+_PARTS = (*SPRING_GROUPS, "damping", "footing")
+_OWN = tuple(field.name for field in fields(Column) if field.name not in _PARTS)
 
 
 def bodies(column: Column) -> tuple[list[float], list[float], list[float]]:

@@ -17,14 +17,13 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column, Damping, Footing, notes_off
+from rbsdem.model.column import SPRING_GROUPS, Column, Damping, Footing, notes_off
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, Rows, check_ending, same
 from rbsdem.run.groups import (
-    SPRING_GROUPS,
+    drawing_of,
     frame_of,
     layered_column,
-    recipe_of,
     springs_of_joints,
 )
 from rbsdem.run.result import FrameResult, Result, cyclic, time_history
@@ -212,7 +211,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "damping" in found:
         column["damping"] = Damping(**_core.typed("damping", found["damping"]))
     column = {"mass": None} | column
-    made = layered_column(recipe_of(groups), column) if "drawing" in groups else Column(**column)
+    made = layered_column(drawing_of(groups), column) if "drawing" in groups else Column(**column)
     return _case_of(made, found, settings, time, values, acting)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import Column, Damping
+from rbsdem.model.column import SPRING_GROUPS, Column, Damping
 from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
@@ -29,9 +29,7 @@ SHAPES: dict[str, type[Section]] = {
     "tee": TeeSection,
 }
 
-#: Groups of springs.
-SPRING_GROUPS = ("shear", "flexure", "axial_spring")
-#: Keys of the place of a spring.
+#: Keys of the location of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")
 #: Classes of the groups that refer to steels.
 _PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
@@ -78,7 +76,7 @@ def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
     return column
 
 
-def recipe_of(groups: Groups) -> LayeredModel:
+def drawing_of(groups: Groups) -> LayeredModel:
     """Return the drawing of a case.
 
     Parameters
