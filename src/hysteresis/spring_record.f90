@@ -296,7 +296,7 @@ contains
          call spring(first(i))%make(list(before + i)%rule)
       end do
       call move_alloc(list, rules%list)
-      rules%name = [rules%name, spring(first(:n))%rule]
+      rules%name = [character(len=rule_length) :: rules%name, spring(first(:n))%rule]
       rules%of = [rules%of, of]
    end subroutine add_rules
 
