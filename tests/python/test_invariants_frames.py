@@ -343,6 +343,16 @@ def test_joints_with_one_layer_left_keep_the_path(case: int) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_a_corner_at_which_nodes_unload_keeps_the_path() -> None:
+    """All columns yield at both ends without hardening, the last end at the corner."""
+    rng = np.random.default_rng(803)
+    made = frame(rng, any_family(rng))
+    run = rbsdem.cyclic(made, displacement=[0.05], corners=True)
+    assert run.summary["relative_energy_residual"] < 1e-12
+    assert sections_off(run) < 1e-12
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 def test_a_search_in_vain_leaves_the_springs_at_their_corner() -> None:
     """Where no way leads through a corner, that is what stops the path, not forces that jumped."""
     rng = np.random.default_rng(40)

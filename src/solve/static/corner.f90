@@ -47,14 +47,17 @@ contains
       !> Springs blocked on their lines in their direction of motion, their number, and that with planes
       integer :: blocked(path%moving), springs_blocked, stopped
       integer :: changes, fewest, left, combinations, i
-      logical :: found, may_pass, marked
+      logical :: found, may_pass
 
       path%direction = 0
       path%changed = 0
-      marked = .false.
       may_pass = path%may_go_back
       if (may_pass) may_pass = any(path%arrived /= 0)
-      if (may_pass) path%rate_in = path%rate
+      if (may_pass) then
+         path%rate_in = path%rate
+         ! Before the first spring is changed: this is the corner.
+         call path%springs%mark()
+      end if
       found = path%goes_back
       if (found) then
          call pass()
@@ -86,7 +89,7 @@ contains
          if (path%springs%crushed_joint() > 0) return
          if (stopped == 0) then
             path%direction = direction
-            if (marked) call path%springs%forget_mark()
+            call path%springs%forget_mark()
             return
          end if
          if (stopped < fewest) then
@@ -100,10 +103,6 @@ contains
             if (found) return
             ! Where the way was sought in vain the springs are on the lines of the corner again.
             if (.not. may_pass) cycle
-         end if
-         if (may_pass .and. .not. marked) then
-            call path%springs%mark()
-            marked = .true.
          end if
          call change_lines(left >= 0)
       end do
@@ -129,12 +128,10 @@ contains
          if (.not. (present(always) .or. path%goes_back .or. path%structure%axially_loaded .or. &
                     any(path%springs%k(:path%moving) < 0.0_wp))) return
          may_pass = .false.
-         if (.not. marked) call path%springs%mark()
          call path%springs%restore()
          call follow_through(path, direction, found)
          if (.not. found) call path%springs%restore()
          call path%springs%forget_mark()
-         marked = .false.
       end subroutine pass
 
       !> Springs that yield at once may leave a node free to turn, though one of them holds it: the one that
