@@ -48,7 +48,7 @@ module rbs_solve_static_equilibrium
    !> two right-hand sides, and one number more, as processors take two or four at a time.
    integer, parameter :: most_dense = 4, row_length = most_dense + 4
 
-   !> Rate of a spring at rest, as a share of that of a spring without stiffness.
+   !> Force rate of a spring at rest, as a share of that of a spring without stiffness on its initial line.
    real(wp), parameter :: at_rest = 8.0_wp*epsilon(1.0_wp)
 
    !> A pivot that is round-off of numbers of the order of one.
@@ -290,19 +290,22 @@ contains
       end associate
    end subroutine follow_dense
 
-   !> Where a spring without stiffness moves alone, the rates of all others are round-off: a spring on a
+   !> Where a spring without stiffness moves alone, the force rates of all others are round-off: a spring on a
    !> corner of its curve must not be sent either way by it.
    pure subroutine clear_at_rest(structure, k, rate)
       class(structure_type), intent(in) :: structure
       !> Stiffness and rate of each spring that can move
       real(wp), intent(in) :: k(:)
       real(wp), intent(inout) :: rate(:)
-      real(wp) :: moved(size(k))
+      real(wp) :: lever(size(k)), largest
 
       if (all(abs(k) > 0.0_wp)) return
-      moved = abs(rate)
-      where (structure%location(:size(k))%kind == flexure) moved = moved*structure%total_height
-      where (moved < at_rest*maxval(moved, mask=.not. abs(k) > 0.0_wp)) rate = 0.0_wp
+      associate (initial => structure%initial_stiffness(:size(k)))
+         lever = 1.0_wp
+         where (structure%location(:size(k))%kind == flexure) lever = structure%total_height
+         largest = maxval(initial*abs(rate)/lever, mask=.not. abs(k) > 0.0_wp)
+         where (abs(k) > 0.0_wp .and. abs(k*rate)/lever < at_rest*largest) rate = 0.0_wp
+      end associate
    end subroutine clear_at_rest
 
    !> Solve a few equations of one length by elimination with pivots.
