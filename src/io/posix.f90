@@ -230,7 +230,7 @@ contains
    !> The path of standard input, of which `-` is short.
    pure function standard_input(path) result(long)
       character(len=*), intent(in) :: path
-      character(len=merge(len(standard_input_path), len(path), path == '-')) :: long
+      character(len=:), allocatable :: long
 
       long = path
       if (path == '-') long = standard_input_path

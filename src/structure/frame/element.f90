@@ -270,7 +270,7 @@ contains
       integer, intent(in) :: m, n
       !> Of `find_tangent`
       real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> Misfit: motion of the ends less the deformations; forces of the springs, the share of
+      !> The misfit, motion of the ends less the deformations; forces of the springs, the share of
       !> the dead load that acts, and its forces in them
       real(wp), intent(in) :: misfit(3), f(m + n), dead, dead_force(m + n)
       real(wp), intent(out) :: s(3), correction(m + n)

@@ -127,8 +127,8 @@ contains
       real(wp), intent(in) :: arm(3, 2, n), dead_moment(n)
       !> Of `layered_tangent`
       real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, n)
-      !> Misfit: motion of the ends less that of the joints; forces of the springs; the share of
-      !> the dead load that acts, and its forces in them
+      !> The misfit, motion of the ends less that of the joints; forces of the springs; the share of the
+      !> dead load that acts, and its forces in them
       real(wp), intent(in) :: misfit(3), f(m), dead, dead_force(m)
       real(wp), intent(out) :: s(3)
       real(wp), intent(inout) :: correction(coordinates)
