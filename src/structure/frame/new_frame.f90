@@ -46,7 +46,7 @@ module rbs_structure_frame_new_frame
       !> flexibility of E I
       real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
       logical :: lumped = .false.
-      !> Of springs: kind, joint, position in shares of the clear length, parameters; those that open are last.
+      !> Of springs: kind, joint, position in shares of the clear length, parameters; last those that open.
       !> Layers of a joint follow one another, with their distances from its middle [m]
       integer, allocatable :: kind(:), joint(:)
       real(wp), allocatable :: position(:), y(:)
