@@ -12,8 +12,8 @@ The results are kept in DIR/results.json, so that a run can be stopped and taken
 the file to begin anew. `--table` prints it as a table in Markdown. The exit code is 1 if a mutant
 has survived.
 
-It needs the virtual environment that scripts/test.sh makes, where the package is installed plainly: an
-editable install would hide changes of Python from the tests. It takes about half an hour.
+It needs the virtual environment that scripts/test.sh makes, in which the package is installed
+plainly: an editable install would hide changes of Python. It takes about half an hour.
 """
 
 from __future__ import annotations
