@@ -230,10 +230,17 @@ contains
    !> The path of standard input, of which `-` is short.
    pure function standard_input(path) result(long)
       character(len=*), intent(in) :: path
-      character(len=:), allocatable :: long
+      character(len=length_of(path)) :: long
 
       long = path
       if (path == '-') long = standard_input_path
    end function standard_input
+
+   !> Length of the path that `standard_input` returns.
+   pure integer function length_of(path)
+      character(len=*), intent(in) :: path
+
+      length_of = merge(len(standard_input_path), len(path), path == '-')
+   end function length_of
 
 end module rbs_io_posix
