@@ -42,13 +42,23 @@ def frame(storeys: int, bays: int, **more: Any) -> rbsdem.Frame:
     )  # fmt: skip
 
 
-def settle() -> None:
-    """Choose how OpenSees solves."""
+def settle(unbalance: float = 1e-6) -> None:
+    """Choose how OpenSees solves, to an unbalanced force [N]."""
     ops.system("BandGeneral")
     ops.numberer("RCM")
     ops.constraints("Plain")
-    ops.test("NormUnbalance", 1e-6, 30)
+    ops.test("NormUnbalance", unbalance, 30)
     ops.algorithm("Newton")
+
+
+def put_on(unbalance: float = 1e-6) -> None:
+    """Put the load of the pattern on the model, where it stays."""
+    ops.integrator("LoadControl", 0.1)
+    ops.analysis("Static")
+    ops.analyze(10)
+    ops.loadConst("-time", 0.0)
+    ops.wipeAnalysis()
+    settle(unbalance)
 
 
 def nodes_of_model(storeys: int, bays: int) -> int:
@@ -95,12 +105,7 @@ def model(storeys: int, bays: int, kinematics: str, load: float) -> int:
         ops.timeSeries("Linear", 1)
         ops.pattern("Plain", 1, 1)
         ops.eleLoad("-ele", *beams, "-type", "-beamUniform", -load)
-        ops.integrator("LoadControl", 0.1)
-        ops.analysis("Static")
-        ops.analyze(10)
-        ops.loadConst("-time", 0.0)
-        ops.wipeAnalysis()
-        settle()
+        put_on()
     return storeys * lines + 1
 
 
@@ -200,12 +205,7 @@ def model_of_fibres(storeys: int, bays: int, load: float) -> int:
     ops.pattern("Plain", 1, 1)
     for node in range(lines + 1, (storeys + 1) * lines + 1):
         ops.load(node, 0.0, -load, 0.0)
-    ops.integrator("LoadControl", 0.1)
-    ops.analysis("Static")
-    ops.analyze(10)
-    ops.loadConst("-time", 0.0)
-    ops.wipeAnalysis()
-    settle()
+    put_on()
     return storeys * lines + 1
 
 
@@ -237,15 +237,8 @@ def drawn_model() -> int:
     Each member is one `forceBeamColumn` with three sections of 24 fibres of concrete and the bars;
     slip of bars and shear have no springs.
     """
-    storeys, lines = 4, 4
-    ops.wipe()
-    ops.model("basic", "-ndm", 2, "-ndf", 3)
-    for i, j in product(range(storeys + 1), range(lines)):
-        ops.node(i * lines + j + 1, j * BAY, i * HEIGHT)
-        if i:
-            ops.mass(i * lines + j + 1, *(60e3 / (6 if j in (0, 3) else 3),) * 2, 0.0)
-        else:
-            ops.fix(j + 1, 1, 1, 1)
+    storeys = 4
+    lines = nodes_of_model(storeys, 3)
     ops.uniaxialMaterial("Concrete02", 1, -30e6, -0.002, -6e6, -0.006, 0.1, 2e6, 2e9)
     ops.uniaxialMaterial("Steel02", 2, 446e6, 200e9, 0.01, 18.0, 0.925, 0.15)
     for tag, depth in ((1, 0.4), (2, 0.5)):
@@ -267,18 +260,11 @@ def drawn_model() -> int:
         number += 1
         beams.append(number)
         ops.element("forceBeamColumn", number, i * lines + j + 1, i * lines + j + 2, 2, 2)
-    settle()
-    ops.test("NormUnbalance", 10.0, 30)
+    settle(10.0)
     ops.timeSeries("Linear", 1)
     ops.pattern("Plain", 1, 1)
     ops.eleLoad("-ele", *beams, "-type", "-beamUniform", -20e3)
-    ops.integrator("LoadControl", 0.1)
-    ops.analysis("Static")
-    ops.analyze(10)
-    ops.loadConst("-time", 0.0)
-    ops.wipeAnalysis()
-    settle()
-    ops.test("NormUnbalance", 10.0, 30)
+    put_on(10.0)
     return storeys * lines + 1
 
 
