@@ -61,7 +61,7 @@ class Part:
     name, start, end : str
         Its name and those of its nodes.
     section : RectangularSection
-        y > 0 is below in a beam that goes to the right.
+        y > 0 is up in a beam that goes to the right.
     load : float
         Compression under the dead load [N].
     rigid : tuple of float
@@ -264,7 +264,7 @@ def cruciform(ends: str) -> Drawing:
     beam = rbsdem.RectangularSection(
         0.229, 0.457, concrete, bar_diameter=0.016, ties=rbsdem.Ties(0.006, 0.08, tie),
         bars=[
-            (-0.1865, 3 * bar, deformed), (-0.1535, 2 * bar, deformed), (0.1865, 2 * bar, deformed)
+            (0.1865, 3 * bar, deformed), (0.1535, 2 * bar, deformed), (-0.1865, 2 * bar, deformed)
         ],
         cover=0.028,
     )  # fmt: skip
@@ -299,7 +299,7 @@ def kind(part: Part, length: float, **values: float) -> FrameMember:
 
     def member(clear: float) -> FrameMember:
         return rbsdem.section.member(
-            part.section.mirrored, clear, axial_load=part.load, model_parameters=changed
+            part.section, clear, axial_load=part.load, model_parameters=changed
         )
 
     if all(part.bends):

@@ -23,7 +23,7 @@ module rbs_section_section_record
 
    !> Longitudinal bars, an entry for each bar or row of bars.
    type, extends(visited_record) :: bars_record
-      !> Distance from mid-depth [m], positive to the tension face, and area [m2]
+      !> Distance from mid-depth [m], y > 0 up in a beam, and area [m2]
       real(wp), allocatable :: y(:), area(:)
       !> Numbers of their steels
       integer, allocatable :: steel(:)
@@ -89,7 +89,7 @@ contains
       class(bars_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      call v%key('y', self%y, 'm', any_number, 'distance from mid-depth, positive to the tension face', &
+      call v%key('y', self%y, 'm', any_number, 'distance from mid-depth; y > 0 is up in a beam', &
                  most_bars)
       call v%key('area', self%area, 'm2', above_zero, 'area of the bar or row', most_bars)
       call v%key('steel', self%steel, '', any_number, 'numbers of their steels', most_bars)

@@ -38,9 +38,9 @@ module rbs_section_shape
       logical :: round = .false., hollow = .false., flanged = .false.
       !> Thickness of the walls around the void: at the faces y = +-depth/2, and of the webs [m]
       real(wp) :: wall = 0.0_wp, side_wall = 0.0_wp
-      !> Width of the flange with that of the web, its thickness [m]; whether it is at the face y = depth/2
+      !> Width of the flange with that of the web, its thickness [m]; whether it is at the face y = -depth/2
       real(wp) :: flange_width = 0.0_wp, flange_thickness = 0.0_wp
-      logical :: flange_in_tension = .false.
+      logical :: flange_below = .false.
    contains
       procedure :: area_between
       procedure :: moment_between
@@ -105,7 +105,7 @@ contains
    elemental real(wp) function middle_of_flange(self) result(y)
       type(shape_type), intent(in) :: self
 
-      y = merge(0.5_wp, -0.5_wp, self%flange_in_tension)*(self%depth - self%flange_thickness)
+      y = merge(-0.5_wp, 0.5_wp, self%flange_below)*(self%depth - self%flange_thickness)
    end function middle_of_flange
 
    !> Integral of the width between two distances from mid-depth [m2].
@@ -282,7 +282,7 @@ contains
             call v%key('flange_width', self%flange_width, 'm', column_size, &
                        'width of the flange with that of the web')
             call v%key('flange_thickness', self%flange_thickness, 'm', column_size, 'thickness of the flange')
-            call v%key('flange_in_tension', self%flange_in_tension, 'flange at the face y > 0')
+            call v%key('flange_below', self%flange_below, 'flange at the face y < 0, below')
          end if
       end if
    end subroutine visit

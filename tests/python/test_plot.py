@@ -151,7 +151,7 @@ LABELS = {
     "moment_curvature": ("Curvature (mrad/m)", "Moment (kN m)"),
     "shear_diagram": ("Shear strain (mm/m)", "Shear force (kN)"),
     "interaction": ("Moment (kN m)", "Axial load (kN), compression positive"),
-    "section": ("Width (mm)", "$y$ (mm), tension below"),
+    "section": ("Width (mm)", "$y$ (mm)"),
     "section_state": ("Width (mm)", "$y$ (mm)"),
     "history": ("Time (s)", "Top displacement (mm)"),
     "energy": ("Time (s)", "Energy (kJ)"),

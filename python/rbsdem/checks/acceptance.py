@@ -91,6 +91,7 @@ class _Demand(NamedTuple):
 
     member: str
     end: str
+    face: str
     kind: Literal["column", "beam", "interior joint", "exterior joint"]
     length: float
     section: Section
@@ -131,19 +132,27 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
                     continue
                 # Clockwise at the start stretches the right side, at the end the left one.
                 left = (side > 0) == bool(j)
+                across = one.axis[::-1] * (-1, 1) * (1 if left else -1)
                 near = sections[j] if left else sections[j].mirrored
                 far = sections[1 - j].mirrored if left else sections[1 - j]
                 most = max(1.5 * near.depth, 1e-9)
                 moved = abs(float(moments[row])) / max(abs(float(sway[row])), 1e-9)
                 found.append(
                     _Demand(
-                        name, ("start", "end")[j], "column" if one.upright else "beam", length,
-                        near, far,
+                        name, ("start", "end")[j], _face(across, one.upright),
+                        "column" if one.upright else "beam", length, near, far,
                         float(axial[row]), abs(float(moments[row])), float(shear.max()),
                         abs(float(rotation[row])), min(max(moved, most), max(length, most)),
                     )
                 )  # fmt: skip
     return [*found, *_joints(result, rows)]
+
+
+def _face(way: Array, upright: bool) -> str:
+    """Return the face of a member that lies in a direction."""
+    if upright:
+        return "right" if way[0] > 0 else "left"
+    return "top" if way[1] > 0 else "bottom"
 
 
 def between(rows: Array, values: Array) -> Array:
@@ -199,7 +208,7 @@ def _joints(result: FrameResult, rows: Array) -> Iterator[_Demand]:
         beam = max((one[3] for one in beams), key=lambda own: own.depth)
         row = int(np.abs(thrust).argmax())
         yield _Demand(
-            name, "panel" if name in panels else "joint",
+            name, "panel" if name in panels else "joint", "",
             "interior joint" if len(beams) > 1 else "exterior joint", math.nan, column, beam,
             float(axial[row]), abs(float(moment[row])), abs(float(thrust[row])), turned, math.nan,
         )  # fmt: skip
@@ -324,7 +333,7 @@ class Assessment(Tabular):
     rows: list[dict[str, Any]]
 
     def to_pandas(self) -> DataFrame:
-        """Return a row for each end and each side that it turned to, and one for each joint.
+        """Return a row for each end and each face that was in tension, and one for each joint.
 
         Demand (plastic or chord rotation), rotation at yield, limits, and ratios of rotation and of
         shear; `status` is "evaluated", or why the code does not cover the end. NaN is no ratio.
@@ -347,6 +356,7 @@ class Assessment(Tabular):
         columns = [
             "member",
             "end",
+            "face",
             "demand_rad",
             f"limit_{name}_rad",
             f"ratio_{name}",
@@ -500,6 +510,7 @@ def assess(
             {
                 "member": d.member,
                 "end": d.end,
+                "face": d.face,
                 "axial_N": d.axial,
                 "moment_Nm": d.moment,
                 "shear_N": d.shear,

@@ -162,7 +162,7 @@ THICKEST = 0.075
 _MOST_BARS = 1000
 
 Bar = tuple[float, float, Steel]
-"""One bar: distance from mid-depth [m], positive to the tension face; area [m2]; steel."""
+"""One bar: distance from mid-depth [m], y > 0 up in a beam; area [m2]; steel."""
 
 
 @dataclass(frozen=True)

@@ -369,8 +369,9 @@ class RectangularSection(Section):
     concrete : Concrete
         The concrete.
     bars : sequence of (y, area, steel), optional
-        Bars one by one: distance from mid-depth, positive to the tension face [m], area [m2],
-        `Steel`. A row of bars may be one entry if `bar_diameter` is given.
+        Bars one by one: distance from mid-depth, upward positive [m], area [m2], `Steel`. A row
+        of bars may be one entry if `bar_diameter` is given. y > 0 is up in a beam and on the left
+        in a column of a frame; a positive curvature pulls it.
     layout : Layout, optional
         Bars by number and diameter, in place of `bars`.
     ties : Ties, optional
@@ -557,7 +558,7 @@ class RectangularSection(Section):
 
 @dataclass(frozen=True)
 class TeeSection(RectangularSection):
-    """A beam with a slab: a rectangular web with a flange at one face.
+    """A beam with a slab: a rectangular web with a flange at one face, by default above.
 
     Hoops, cover and `width` are those of the web; the flange is concrete outside the hoops. Bars of
     the slab are bars at their depth, as far as the flange is effective. An L-section, held upright
@@ -573,9 +574,9 @@ class TeeSection(RectangularSection):
         Effective width of the flange with that of the web [m]: `rbsdem.section.flange_width`.
     flange_thickness : float
         Thickness of the flange [m].
-    flange_in_tension : bool, optional
-        Whether the flange is at the face y > 0, which a positive curvature pulls. By default it is
-        at the other one, on top in figures of the section; `mirrored` has it where it was not.
+    flange_below : bool, optional
+        Whether the flange is at the face y < 0. By default it is above, at y > 0, which a positive
+        curvature pulls: a beam with its slab then hogs. `mirrored` is the beam upside down.
 
     Raises
     ------
@@ -589,7 +590,7 @@ class TeeSection(RectangularSection):
     ...     0.3,
     ...     0.5,
     ...     Concrete(30e6),
-    ...     bars=[(0.2, 1e-3, steel), (-0.2, 1e-3, steel), (-0.19, 0.5e-3, steel)],
+    ...     bars=[(-0.2, 1e-3, steel), (0.2, 1e-3, steel), (0.19, 0.5e-3, steel)],
     ...     bar_diameter=0.016,
     ...     ties=Ties(0.008, 0.1, steel),
     ...     cover=0.03,
@@ -597,13 +598,13 @@ class TeeSection(RectangularSection):
     ...     flange_thickness=0.12,
     ... )
     >>> print(f"{beam.gross_area:.3f} m2, centroid at {1e3 * beam.centroid:.1f} mm")
-    0.258 m2, centroid at -79.5 mm
+    0.258 m2, centroid at 79.5 mm
     """
 
     _: KW_ONLY
     flange_width: float
     flange_thickness: float
-    flange_in_tension: bool = False
+    flange_below: bool = False
 
     def __str__(self) -> str:
         """One line, as for other sections."""
@@ -631,12 +632,12 @@ class TeeSection(RectangularSection):
         return "tee"
 
     def _sizes(self) -> dict[str, float]:
-        names = "flange_width", "flange_thickness", "flange_in_tension"
+        names = "flange_width", "flange_thickness", "flange_below"
         return super()._sizes() | {name: getattr(self, name) for name in names}
 
     def _turned(self) -> dict[str, Any]:
         wider = self.flange_width > self.width
-        return {"flange_in_tension": not self.flange_in_tension} if wider else {}
+        return {"flange_below": not self.flange_below} if wider else {}
 
     def part(self, depth: float) -> tuple[float, float]:
         """Return area and first moment about mid-depth of the concrete near the compression face.
@@ -644,7 +645,7 @@ class TeeSection(RectangularSection):
         `depth` is measured from that face [m].
         """
         area, first = super().part(depth)
-        face = self.depth - self.flange_thickness if self.flange_in_tension else 0.0
+        face = 0.0 if self.flange_below else self.depth - self.flange_thickness
         reached = min(max(depth - face, 0.0), self.flange_thickness)
         wings = reached * (self.flange_width - self.width)
         return area + wings, first + wings * (face + 0.5 * reached - 0.5 * self.depth)
@@ -655,7 +656,7 @@ class TeeSection(RectangularSection):
         inner = self.flange_thickness - face
         half = np.array([(web, face), (web, inner), (wing, inner), (wing, -face)])
         whole = np.vstack([half, half[::-1] * [-1, 1]])
-        return whole * [1, -1] if self.flange_in_tension else whole
+        return whole if self.flange_below else whole * [1, -1]
 
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
         """Return where bars stand across the width: those of the slab along the flange.
@@ -664,7 +665,7 @@ class TeeSection(RectangularSection):
         """
 
         def in_slab(bar: tuple[float, float]) -> bool:
-            y = bar[0] if self.flange_in_tension else -bar[0]
+            y = -bar[0] if self.flange_below else bar[0]
             beside = sum(d for other, d in bars if abs(other - bar[0]) < 1e-6)
             return y > 0.5 * self.depth - self.flange_thickness and beside > 0.5 * self.width
 

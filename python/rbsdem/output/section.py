@@ -168,7 +168,7 @@ def section_springs(springs: SectionSprings) -> Axes | AxesArray:
 
 
 def section(section: Section, *, ax: Axes | None = None) -> Axes:
-    """Draw outline, ties and bars of a section to scale, in mm, the tension face below.
+    """Draw outline, ties and bars of a section to scale, in mm, as it lies in a beam: y > 0 is up.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
     from matplotlib.patches import Circle, Polygon  # noqa: PLC0415
 
     with axes_or_new(ax, (2.6, 2.8)) as drawn:
-        outline = 1e3 * section.outline() * [1, -1]
+        outline = 1e3 * section.outline()
         w, h = np.ptp(outline, axis=0)
         drawn.add_patch(Polygon(outline, **_OUTLINE))
         looks = ((_TIE, 2.0), (_INSIDE, 2.0), (_TIE, 2.2), (_INSIDE, 2.2))
@@ -197,14 +197,13 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
             empty = {**_OUTLINE, "facecolor": "white"}
             drawn.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
         for x, y, diameter in section.place_bars(section.single_bars):
-            drawn.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
+            drawn.add_patch(Circle((1e3 * x, 1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
         reach_x, reach_y = 0.54 * w, 0.54 * h
         drawn.set(xlim=(-reach_x, reach_x), ylim=(-reach_y, reach_y))
         drawn.set_aspect("equal")
         drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
-        half = f"{0.5 * h:g}"
-        drawn.set_yticks([-0.5 * h, 0.0, 0.5 * h], [half, "0", f"\N{MINUS SIGN}{half}"])
-        drawn.set(xlabel="Width (mm)", ylabel="$y$ (mm), tension below")
+        drawn.set_yticks([-0.5 * h, 0.0, 0.5 * h])
+        drawn.set(xlabel="Width (mm)", ylabel="$y$ (mm)")
         for spine in drawn.spines.values():
             spine.set_visible(False)
     return drawn

@@ -15,6 +15,7 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError, warn
 from rbsdem.model import frame as model
+from rbsdem.model.column import NOTES_ON, notes_off
 from rbsdem.model.frame import FrameMember, FrameNode
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
@@ -32,6 +33,8 @@ CONCRETE_WEIGHT = 25e3
 _STEP = 0.01
 #: Masses that differ by more than this from those of the loads are told.
 _DIFFER = 0.05
+#: Beams under load with more bars below than this times those above are told.
+_MORE_BELOW = 1.25
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,8 @@ class Frame(model.Frame):
             Heights and widths between axes [m].
         columns, beams : Section, pair of Section, FrameMember, or mapping
             One for all, or by (line, storey) or (bay, storey), 0 for all, where the last that fits
-            counts; None: there is no member. A pair are the sections of the two halves. Sections
-            lie as their figures show them: y > 0 of a beam is below, of a column on the left.
+            counts; None: there is no member. A pair are the sections of the two halves. y > 0 of
+            a section is up in a beam, on the left in a column.
         ends : float or "asce", optional
             Part of a node that is rigid in columns and beams, or the rule of ASCE 41-17, 10.4.2.2.1
             (`rbsdem.section.rigid_ends`); by default that rule, and 1 with springs in the nodes.
@@ -178,6 +181,8 @@ class Frame(model.Frame):
         """
         grid = _Grid(storeys, bays, building.columns, building.beams)
         cells = grid.members(cls, building, given)
+        if NOTES_ON.get():
+            grid.note_on_bars(given["beam_load"])
         nodes = {node.name: node for node in given["nodes"]}
         for name, panel in grid.panels(building).items():
             own = nodes.get(name, FrameNode(name))
@@ -213,7 +218,9 @@ class Frame(model.Frame):
         known = {one.name: getattr(self, one.name) for one in fields(model.Frame)}
         for name in ("storeys", "bays", "columns", "beams"):
             known.pop(name)
-        if self.of_drawings(storeys, bays, building, known | {"nodes": nodes}) != self:
+        with notes_off():
+            again = self.of_drawings(storeys, bays, building, known | {"nodes": nodes})
+        if again != self:
             # It was changed since, as by `without`.
             return self._statement
         plain = replace(self, nodes=nodes, building=None)
@@ -373,13 +380,28 @@ class _Grid:
             columns[i, k] = _kind(one, self.storeys[k - 1], ends, load[i, k], f"C-{i}-{k}")
         for (i, k), one in self.beams.items():
             ends = rigid[i, k][1], rigid[i + 1, k][1]
-            turned = one
-            if one is not None and not isinstance(one, FrameMember):
-                turned = tuple(part.mirrored for part in _halves(one))
             beams[i, k] = _kind(
-                turned, self.bays[i - 1], ends, 0.0, f"B-{i}-{k}", under_load=bool(loads[k - 1])
+                one, self.bays[i - 1], ends, 0.0, f"B-{i}-{k}", under_load=bool(loads[k - 1])
             )
         return list(self.kinds)
+
+    def note_on_bars(self, beam_load: Any) -> None:
+        """Tell of loaded beams with more bars below than above at their ends, which hog."""
+        loads, found = np.broadcast_to(beam_load, len(self.storeys)), []
+        for (i, k), one in self.beams.items():
+            if not (_is_drawn(one) and loads[k - 1] > 0.0):
+                continue
+            for part in _halves(one):
+                if part.mirrored.tension_steel > _MORE_BELOW * part.tension_steel:
+                    found.append(f"B-{i}-{k}")
+        if found:
+            names = list(dict.fromkeys(found))
+            more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+            warn(
+                f"beam {names[0]}{more}: there are more bars below than above at an end, where "
+                "the load of the floor pulls the top; y > 0 is above, and section.mirrored turns "
+                "a section over"
+            )
 
     def around(self, i: int, k: int) -> tuple[list[Any], list[Any]]:
         """Return the columns below and above a node, and the beams on its left and right."""

@@ -239,7 +239,7 @@ def member(
     ----------
     section : Section or pair of Section
         The section, or those of its two halves, as of a beam with more bars over one support; y > 0
-        is on the left of the way from start to end, which is above in a beam.
+        is up in a beam, on the left of the way from start to end.
     length : float
         Clear length between its ends [m]; a frame refuses it for members of another one.
     axial_load : float, optional

@@ -563,10 +563,8 @@ def _drawings(frame: Frame) -> dict[Section, str]:
     """Return the different sections of the members of a frame, and the names of these."""
     found: dict[Section, list[str]] = {}
     for name, kind in frame.kinds.items():
-        # Beams lie with y > 0 above; figures have it below.
-        upright = frame.geometry[name].upright
         for one in dict.fromkeys(kind.sections or ()):
-            found.setdefault(one if upright else one.mirrored, []).append(name)
+            found.setdefault(one, []).append(name)
     more = {one: f" and {len(names) - 1} more" for one, names in found.items() if len(names) > 1}
     return {one: names[0] + more.get(one, "") for one, names in found.items()}
 

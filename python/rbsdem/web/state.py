@@ -341,7 +341,7 @@ def _beam_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     with faults.of("section", "cover"):
         for name, least in (("width", 0.0), ("depth", 0.0), ("cover", -1.0)):
             parts[name] = _arguments.number(sizes[name], name, above=least, unit="m")
-    for side, name in ((-1.0, "top"), (1.0, "bottom")):
+    for side, name in ((1.0, "top"), (-1.0, "bottom")):
         with faults.of(name, "number"):
             row = group(given, name)
             number = _arguments.integer(row["number"], "number", least=1, most=_MOST_BARS)

@@ -34,14 +34,14 @@ function refused(host, svg) {
 
 // A section to scale with its sizes; returns what its handles need.
 function sectionInto(svg, { section }, figure, scale, system) {
-  const cx = LEFT + SECTION / 2 - 6, cy = TOP + SECTION / 2, X = x => cx + x * scale, Y = y => cy + y * scale;
+  const cx = LEFT + SECTION / 2 - 6, cy = TOP + SECTION / 2, X = x => cx + x * scale, Y = y => cy - y * scale;
   const line = points => points.map(([x, y], i) => (i ? "L" : "M") + X(x).toFixed(1) + " " + Y(y).toFixed(1)).join("") + "Z";
   const round = section.shape.includes("circle");
   const wide = round ? section.diameter : section.width, deep = round ? section.diameter : section.depth;
   svg.append(round
     ? svgElement("circle", { class: "concrete", cx, cy, r: Math.max(0, 0.5 * wide * scale) })
     : section.slab && figure ? svgElement("path", { class: "concrete", d: line(figure.outline) })
-    : svgElement("rect", { class: "concrete", x: X(-wide / 2), y: Y(-deep / 2), width: Math.max(0, wide * scale), height: Math.max(0, deep * scale) }));
+    : svgElement("rect", { class: "concrete", x: X(-wide / 2), y: Y(deep / 2), width: Math.max(0, wide * scale), height: Math.max(0, deep * scale) }));
   let bar = null;
   if (figure) {
     if (figure.hoops.length) svg.append(svgElement("path", { class: "hoop", "fill-rule": "evenodd", d: figure.hoops.map(line).join("") }));
@@ -49,11 +49,11 @@ function sectionInto(svg, { section }, figure, scale, system) {
     if (figure.void.length) svg.append(svgElement("path", { class: "void", d: line(figure.void) }));
     for (const [x, y, d] of figure.bars) {
       svg.append(svgElement("circle", { class: "bar", cx: X(x).toFixed(1), cy: Y(y).toFixed(1), r: (0.5 * d * scale).toFixed(2) }));
-      if (!bar || x + y > bar[2]) bar = [X(x), Y(y), x + y];
+      if (!bar || x - y > bar[2]) bar = [X(x), Y(y), x - y];
     }
   }
   const [unit, factor] = unitOf(system, "length");
-  svg.append(svgElement("text", { class: "size", x: cx, y: Y(deep / 2) + 24, "text-anchor": "middle" }, (round ? "⌀ " : "") + shown(wide / factor) + " " + unit));
+  svg.append(svgElement("text", { class: "size", x: cx, y: Y(-deep / 2) + 24, "text-anchor": "middle" }, (round ? "⌀ " : "") + shown(wide / factor) + " " + unit));
   if (!round) svg.append(svgElement("text", { class: "size", "text-anchor": "middle", transform: `translate(${(X(-wide / 2) - 9).toFixed(1)} ${cy}) rotate(-90)` }, shown(deep / factor) + " " + unit));
   return { scale, cx, cy, bar };
 }
