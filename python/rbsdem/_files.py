@@ -82,6 +82,74 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         raise
 
 
+#: The list of the files of a folder, and how it begins.
+_LIST, _MARK = "contents.txt", "# Written by rbsdem"
+#: What a page or report has near its beginning.
+GENERATOR = '<meta name="generator" content="rbsdem">'
+
+
+def claim_folder(
+    path: str | os.PathLike[str], names: Iterable[str], *, anew: bool = False
+) -> list[Path]:
+    """Return the paths of files that belong together, in a folder that is made for them.
+
+    The list in the folder, contents.txt, names them. A file that is on no list is not ours and is
+    never written over.
+
+    Parameters
+    ----------
+    path : path-like
+        The folder.
+    names : iterable of str
+        Names of the files.
+    anew : bool, optional
+        Whether other files of an earlier list are removed.
+
+    Raises
+    ------
+    InputError
+        If a file of one of these names is there that is on no list; nothing is changed then.
+    """
+    folder, wanted = Path(path), list(names)
+    contents = folder / _LIST
+    earlier: list[str] = []
+    if contents.is_file():
+        head, *earlier = contents.read_text("utf-8", errors="replace").splitlines() or [""]
+        if not head.startswith(_MARK):
+            earlier, wanted = [], [_LIST, *wanted]
+    strange = [folder / name for name in wanted if name not in earlier and (folder / name).exists()]
+    if strange:
+        raise InputError(
+            f"{strange[0]} is there and is none of the files that rbsdem wrote into this folder; "
+            "move it away, or choose another name"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    others = [name for name in earlier if name not in wanted]
+    # An interrupted run leaves only what is on the list.
+    _write_list(contents, [*others, *wanted])
+    if anew:
+        for name in others:
+            # A name with a folder in it is none that was written here.
+            if Path(name).name == name:
+                (folder / name).unlink(missing_ok=True)
+        _write_list(contents, wanted)
+    return [folder / name for name in wanted]
+
+
+def _write_list(path: Path, names: Iterable[str]) -> None:
+    with atomic_write(path) as file:
+        file.write("\n".join((f"{_MARK}, which replaces:", *names, "")).encode())
+
+
+def refuse_other_page(path: Path) -> None:
+    """Refuse to write a page over a file that is none, where the name of it was not asked for."""
+    if path.is_file() and GENERATOR.encode() not in path.read_bytes()[:1000]:
+        raise InputError(
+            f"{path} is there and is no report of rbsdem; move it away, or choose another name "
+            "with --output"
+        )
+
+
 def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) -> None:
     """Write rows as csv, whole or not at all.
 

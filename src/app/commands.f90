@@ -9,9 +9,9 @@ module rbs_app_commands
    use rbs_case_key_list, only: keys_as_json, keys_as_table
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
-   use rbs_io_output_file, only: partial
+   use rbs_io_output_file, only: is_ours, partial
    use rbs_io_state_file, only: read_state, write_state
-   use rbs_io_posix, only: is_standard_output, same_file, standard_input
+   use rbs_io_posix, only: exists, is_standard_output, same_file, standard_input
    use rbs_output_notes, only: drift_note, run_notes, structure_notes
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: figure_type
@@ -142,25 +142,39 @@ contains
          end associate
       end subroutine solve
 
-      !> The rows must not replace a file that the case was read from.
+      !> Neither rows nor state may replace a file that the case was read from, nor the rows a file of others
+      !> whose name nobody gave.
       subroutine check_output()
-         character(len=:), allocatable :: input
-         integer :: i
-         logical :: clash
+         character(len=:), allocatable :: state
 
-         clash = same_file(file, standard_input(run%path))
-         do i = 1, run%case%loadings
-            if (.not. allocated(run%case%loading(i)%file)) cycle
-            input = from_case_folder(run%path, run%case%loading(i)%file)
-            if (same_file(file, input)) clash = .true.
-            ! A failed run keeps its rows there.
-            if (same_file(file//partial, input)) clash = .true.
-         end do
-         if (clash) then
+         ! A failed run keeps its rows in the second one.
+         if (is_input(file) .or. is_input(file//partial)) then
             call fatal_error(error, bad_input, 'output: '//file//' is an input of the case and would '// &
                              'be written over; choose another file with --output')
+         else if (exists(file) .and. .not. (allocated(output) .or. allocated(run%case%output%file) .or. &
+                                            is_ours(file))) then
+            call fatal_error(error, bad_input, 'output: '//file//' is there and has no rows of rbsdem; '// &
+                             'move it away, or name a file with --output')
+         else if (allocated(run%case%output%state)) then
+            state = from_case_folder(run%path, run%case%output%state)
+            if (is_input(state) .or. same_file(state, file) .or. state == file) then
+               call fatal_error(error, bad_input, 'output: state = '//run%case%output%state//' is an '// &
+                                'input of the case or its file of rows; choose another name')
+            end if
          end if
       end subroutine check_output
+
+      !> Whether a path is the case itself or a history of it.
+      logical function is_input(path)
+         character(len=*), intent(in) :: path
+         integer :: i
+
+         is_input = same_file(path, standard_input(run%path))
+         do i = 1, run%case%loadings
+            if (.not. allocated(run%case%loading(i)%file)) cycle
+            if (same_file(path, from_case_folder(run%path, run%case%loading(i)%file))) is_input = .true.
+         end do
+      end function is_input
 
       !> Path of the csv: that of the command line, else that of the case, else the case's name with .csv.
       subroutine output_path(path)

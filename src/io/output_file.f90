@@ -15,7 +15,7 @@ module rbs_io_output_file
    implicit none
    private
 
-   public :: output_file, first_words
+   public :: output_file, first_words, is_ours
 
    !> Ending of the name until the file is whole.
    character(len=*), parameter, public :: partial = '.partial'

@@ -283,13 +283,13 @@ def test_the_report_of_an_assessment_is_short(push, tmp_path):
     assert headings == ["Inputs", "Target displacement", "Storeys", "Members", "Assumed"]
     # Ten rows of members, one of each storey and figure of the target; layers are beside it.
     assert text.count("<tr>") == 3 + 10 + 2 + len(found.to_pandas())
-    storeys = (tmp_path / "house_storeys.csv").read_text("utf-8").splitlines()
+    storeys = (tmp_path / "house_files/storeys.csv").read_text("utf-8").splitlines()
     assert float(storeys[1].split(",")[2]) == pytest.approx(found.base_shear, rel=1e-3)
     for drawing in (COLUMN, BEAM):
         assert unescape(text).count(str(drawing)) == 1
-    rows = (tmp_path / "house_all_members.csv").read_text("utf-8").splitlines()
+    rows = (tmp_path / "house_files/all_members.csv").read_text("utf-8").splitlines()
     assert len(rows) == 1 + len(checked.rows)
-    assert (tmp_path / "house_inputs.csv").is_file()
+    assert (tmp_path / "house_files/inputs.csv").is_file()
     whole = rbsdem.report(push, tmp_path / "push.html").read_text("utf-8")
     assert whole.count("<tr>") < 60
 

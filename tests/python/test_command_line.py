@@ -410,6 +410,26 @@ def test_output_never_replaces_an_input(run_cli, case_text, tmp_path, output):
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+def test_no_file_of_the_user_is_written_over_unasked(run_cli, folder, good):
+    """The name that a case gives its rows may be that of a measurement; a state may be the case."""
+    rows, case = folder / "case.csv", folder / "case.nml"
+    rows.write_text("displacement,force\n1,2\n")
+    text = faults(run_cli(["run", "case.nml"], folder))
+    assert "case.csv is there and has no rows of rbsdem" in text
+    assert rows.read_text() == "displacement,force\n1,2\n"
+    # Asked for, it is; and rows of an earlier run are replaced.
+    assert run_cli(["run", "case.nml", "--output", "case.csv"], folder).returncode == 0
+    assert run_cli(["run", "case.nml"], folder).returncode == 0
+    assert rows.read_bytes() == good
+    before = case.read_text()
+    for state in ("case.nml", "./case.csv"):
+        given = before + f"&output state = '{state}' /\n"
+        case.write_text(given)
+        assert "its file of rows; choose another" in faults(run_cli(["run", "case.nml"], folder))
+        assert case.read_text() == given
+    assert rows.read_bytes() == good
+
+
 def test_force_beyond_the_capacity_keeps_the_path_and_the_old_output(
     run_cli, case_text, tmp_path, read_csv
 ):
@@ -774,7 +794,7 @@ def test_progress_stays_away_in_a_pipe_with_quiet_and_in_short_runs(
 )
 def test_stopped_run_keeps_its_rows_and_the_old_output(executable, long_run, tmp_path, number):
     """As a run that fails does; those of a run that is killed are named by the next one."""
-    (tmp_path / "case.csv").write_text("old")
+    (tmp_path / "case.csv").write_text("# rbsdem old")
     process = subprocess.Popen(
         [executable, "run", "case.nml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )
@@ -783,7 +803,7 @@ def test_stopped_run_keeps_its_rows_and_the_old_output(executable, long_run, tmp
     process.send_signal(number)
     _, told = process.communicate(timeout=PATIENCE)
     assert process.returncode == -number
-    assert (tmp_path / "case.csv").read_text() == "old"
+    assert (tmp_path / "case.csv").read_text() == "# rbsdem old"
     kept = own if number == signal.SIGKILL else tmp_path / "case.csv.partial"
     text = kept.read_text()
     assert text.endswith("\n")

@@ -12,6 +12,7 @@ import re
 import socket
 import threading
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -26,6 +27,7 @@ from rbsdem.codes import code_values
 from rbsdem.errors import AccuracyWarning
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.output import frames as figures_of_frames
+from rbsdem.run.case import case_of
 from rbsdem.springs import Elastic
 from rbsdem.web import answers as web_answers
 from rbsdem.web import exports, frames
@@ -701,17 +703,53 @@ def test_a_record_is_reported_with_its_tables_and_its_case(at, tmp_path):
     for word in ("Pier &lt;3&gt;", "A. Engineer", "Bridge", "2026", "rbsdem 0", *words):
         assert word in page, word
     assert not re.search(r"(src|href)=\"(?!data:|#)", page)
-    tables = {file.stem: pd.read_csv(file) for file in tmp_path.glob("x_*.csv")}
+    tables = {file.stem: pd.read_csv(file) for file in tmp_path.glob("x_files/*.csv")}
     assert len(tables) >= 2
-    assert set(tables["x_inputs"]) == {"group", "key", "value", "in", "meaning"}
+    assert set(tables["inputs"]) == {"group", "key", "value", "in", "meaning"}
     if isinstance(record, rbsdem.Result | FrameResult):
-        again = rbsdem.read_case(tmp_path / "x.nml").run()
+        again = rbsdem.read_case(tmp_path / "x_files" / "case.nml").run()
         # A push-over has rows for its events, too.
         assert again.displacement[-1] == record.displacement[-1]
         assert again.base_shear[-1] == pytest.approx(record.base_shear[-1], rel=1e-12)
-        assert len(tables["x_rows"]) == record.time.size
+        assert len(tables["rows"]) == record.time.size
     with pytest.raises(rbsdem.InputError, match="date"):
         rbsdem.report(record, tmp_path / "y.html", **asked, date=2026)
+
+
+def test_a_report_leaves_the_files_of_the_user_alone(tmp_path, capsys):
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.01)
+    frame = rbsdem.Frame.grid([3.2], [6.0], columns=member, beams=member, beam_load=2e4)
+    push = rbsdem.pushover(frame, drift=0.02, points=10)
+    case = tmp_path / "frame.nml"
+    case.write_text("! mine\n" + case_of(push).to_namelist())
+    mine = case.read_text()
+    assert main(["report", str(case)]) == 0
+    assert case.read_text() == mine
+    # All that it wrote is told, and there is nothing else.
+    told = {Path(line.removeprefix("wrote ")) for line in capsys.readouterr().out.splitlines()}
+    folder = tmp_path / "frame_files"
+    listed = folder / "contents.txt"
+    assert told == {f for f in tmp_path.rglob("*") if f.is_file()} - {case, listed}
+    assert folder / "case.nml" in told
+    # What an earlier report of this name wrote goes, a file of the user stays.
+    (folder / "notes.txt").write_text("mine")
+    rbsdem.report(SECTION, tmp_path / "frame.html", axial_load=1e6)
+    assert not (folder / "case.nml").exists()
+    assert (folder / "inputs.csv").is_file()
+    assert (folder / "notes.txt").read_text() == "mine"
+    assert case.read_text() == mine
+    # A name that is taken by a file of the user is refused before anything is written.
+    page = (tmp_path / "frame.html").read_bytes()
+    (folder / "rows.csv").write_text("mine")
+    with pytest.raises(rbsdem.InputError, match=r"rows\.csv is there and is none of the files"):
+        rbsdem.report(push, tmp_path / "frame.html")
+    assert (tmp_path / "frame.html").read_bytes() == page
+    assert (folder / "rows.csv").read_text() == "mine"
+    # So is a page that is no report, where its name was not given.
+    (tmp_path / "frame.html").write_text("<p>mine</p>")
+    assert main(["report", str(case)]) == 2
+    assert "is no report of rbsdem" in capsys.readouterr().err
+    assert (tmp_path / "frame.html").read_text() == "<p>mine</p>"
 
 
 def test_what_has_no_report_says_so(tmp_path):

@@ -44,7 +44,7 @@ def test_files_and_report(folder, tmp_path, capsys):
     ]
     assert main(["ida", *words, "--out", str(out)]) == 0
     names = ["fractiles.csv", "fragility.csv", "fragility.png", "ida.csv", "ida.parquet", "ida.png"]
-    assert sorted(path.name for path in out.iterdir()) == [*names, "store"]
+    assert sorted(path.name for path in out.iterdir()) == ["contents.txt", *names, "store"]
     runs = read_rows(out / "ida.csv")
     assert len(runs) == 12
     assert {row["motion"] for row in runs} == {f"synthetic_0{i}" for i in range(1, 5)}

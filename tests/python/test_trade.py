@@ -483,7 +483,9 @@ def test_command_writes_its_files(tmp_path):
     for word in ("a [short] motion", "They agree to", "hht, pdelta (as given)", "Tolerance 0.01: "):
         assert word in done.stdout
     folder = tmp_path / "case-trade"
-    assert {path.name for path in folder.iterdir()} == {"trade.csv", "physics.csv", "trade.png"}
+    assert {path.name for path in folder.iterdir()} == {
+        "contents.txt", "trade.csv", "physics.csv", "trade.png",
+    }  # fmt: skip
     assert (folder / "trade.png").stat().st_size > 5000
     rows = read(folder / "trade.csv")
     assert rows[0]["method"] == "hht"

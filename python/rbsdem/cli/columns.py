@@ -16,7 +16,7 @@ import click
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._files import data_frame, save_frame, write_figure
+from rbsdem._files import claim_folder, data_frame, refuse_other_page, save_frame, write_figure
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
@@ -42,8 +42,7 @@ from rbsdem.run.case import Case, read_case
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver
 from rbsdem.web.answers import tests_of
 from rbsdem.web.exports import drawing_in, opened
-from rbsdem.web.report import report as report_record
-from rbsdem.web.report import write_report
+from rbsdem.web.report import write_record, write_report
 from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
 
@@ -135,6 +134,8 @@ def trade(
     Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong.
     """
     model = read_case(case)
+    folder = output or case.with_name(f"{case.stem}-trade")
+    *written, picture = claim_folder(folder, ["trade.csv", "physics.csv", "trade.png"])
     loads: dict[str, Any] = dict(model.loads)
     study = compare_methods(
         model.column,
@@ -147,13 +148,10 @@ def trade(
         budget=budget,
         progress=not quiet and sys.stderr.isatty(),
     )
-    folder = output or case.with_name(f"{case.stem}-trade")
-    folder.mkdir(parents=True, exist_ok=True)
-    written = [folder / "trade.csv", folder / "physics.csv"]
     study.to_csv(written[0])
     physics = study.physics or Physics((), "", math.nan, math.nan)
     physics.to_csv(written[1])
-    figure = methods_output.save(study, folder / "trade.png", model.title)
+    figure = methods_output.save(study, picture, model.title)
     if figure is not None:
         written.append(figure)
     if not quiet:
@@ -259,6 +257,7 @@ def ensemble(
         raise InputError(
             f"{case}: method = 'static' takes no records; give a method in time, as 'auto'"
         )
+    (rows,) = claim_folder(out, ["runs.csv"])
     runs = run_ensemble(
         {model.title or case.stem: model.column},
         _records(list(map(str, records)), units) if records else [_own_motion(case, model)],
@@ -273,7 +272,7 @@ def ensemble(
         allow_partial=True,
     )
     if "" not in runs.status:
-        runs.to_csv(out / "runs.csv")
+        runs.to_csv(rows)
     if not quiet:
         counts = ", ".join(f"{number} {status}" for status, number in runs.counts.items())
         resumed = f", {runs.resumed} of them from the store" if runs.resumed else ""
@@ -281,7 +280,7 @@ def ensemble(
         if "" in runs.status:
             print(f"runs.csv is written when all parts are in {out / 'store'}")
         else:
-            _tell_files([out / "runs.csv"])
+            _tell_files([rows])
     if runs.interrupted:
         return INTERRUPTED
     return 1 if runs.errors else 0
@@ -376,10 +375,10 @@ def ida(
     example = "intensities in m/s2 separated by commas, or search"
     motions = _records(list(map(str, records)), units)
     part = None if shard is None else _part(shard)
-    store = None
+    store, files = None, []
     if out is not None:
         extra("pyarrow.parquet")
-        out.mkdir(parents=True, exist_ok=True)
+        files = claim_folder(out, [*_OF_IDA, "ida.parquet"] if parquet else _OF_IDA)
         store = out / "store"
     watched = [name for name in limits if name in WATCHED]
     analysis = run_ida(
@@ -402,7 +401,8 @@ def ida(
         return 0
     curves, notes = _curves(analysis, limits, spreads)
     frame, more = _fragilities(curves, site)
-    written = [] if out is None else _write(analysis, curves, frame, out, parquet)
+    if files:
+        _write(analysis, curves, frame, files)
     if not quiet:
         terminal = tables.console(120)
         label, size = analysis.runs.measure.label, analysis.lower.size
@@ -411,7 +411,7 @@ def ida(
         terminal.print(tables.table(frame))
         for note in [*notes, *more]:
             terminal.print(tables.plain(note))
-        _tell_files(written)
+        _tell_files(files)
     return 0
 
 
@@ -516,24 +516,25 @@ def _fragilities(
     return data_frame(rows), notes
 
 
+#: Files of the command; ida.parquet follows where it was asked for.
+_OF_IDA = ["ida.csv", "fractiles.csv", "fragility.csv", "ida.png", "fragility.png"]
+
+
 def _write(
-    analysis: IDA, curves: Mapping[str, Fragility], frame: DataFrame, folder: Path, parquet: bool
-) -> list[Path]:
-    written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
-    analysis.runs.to_csv(written[0])
+    analysis: IDA, curves: Mapping[str, Fragility], frame: DataFrame, files: Sequence[Path]
+) -> None:
+    runs, shares, fitted, *figures = files
+    analysis.runs.to_csv(runs)
     level, fractiles = analysis.fractiles()
     names = [f"{analysis.runs.drift}_{share}" for share in (16, 50, 84)]
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
-    save_frame(data_frame(values), written[1])
-    save_frame(frame, written[2])
-    if parquet:
-        written.append(folder / "ida.parquet")
-        tables.write_parquet(analysis.runs.to_pandas(), written[-1])
-    figures = ensemble_figures.ida(analysis), ensemble_figures.fragilities(dict(curves))
-    for name, ax in zip(("ida.png", "fragility.png"), figures, strict=True):
-        written.append(folder / name)
-        write_figure(ax, written[-1], dpi=150)
-    return written
+    save_frame(data_frame(values), shares)
+    save_frame(frame, fitted)
+    for parquet in figures[2:]:
+        tables.write_parquet(analysis.runs.to_pandas(), parquet)
+    drawn = ensemble_figures.ida(analysis), ensemble_figures.fragilities(dict(curves))
+    for file, ax in zip(figures, drawn, strict=False):
+        write_figure(ax, file, dpi=150)
 
 
 # ---- the page -----------------------------------------------------------------------------------
@@ -584,15 +585,17 @@ def report(
 
     It holds loops and limit states and, for a drawn column, section, diagrams, band and code
     values; for a frame its drawing with hinges, limit states and forces, with the tables as csv
-    beside it.
+    in a folder beside it, CASE_files.
 
     \b
     Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
     """
     found, file = read_case(case), output or case.with_suffix(".html")
+    if output is None:
+        refuse_other_page(file)
     if isinstance(found.column, Frame):
         title = title or found.title
-        _tell_files([report_record(found.run(), file, title=title, **head)])
+        _tell_files(write_record(found.run(), file, title=title, **head))
         return 0
     start = start_of(case)
     near = None if tests is None else tests_of(tests)

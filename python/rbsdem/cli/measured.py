@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatch
 from pathlib import Path
 
@@ -12,7 +12,7 @@ import numpy as np
 import rich.box
 from rich.table import Table
 
-from rbsdem._files import save_frame, write_figure
+from rbsdem._files import claim_folder, save_frame, write_figure
 from rbsdem._package import unwarned
 from rbsdem._types import Array
 from rbsdem.cli import FILE, FOLDER, Command, Values, quiet, tell
@@ -162,6 +162,7 @@ def predict(
         raise InputError(f"{table} has no rows; write one for each column")
     path = protocol(drifts, cycles=cycles) if drifts else None
     others = () if near is None else read_specimens(near).with_history()
+    files = {} if out is None else _claimed(tests, out)
     rows, errors = [], []
     for specimen in tests:
         try:
@@ -180,7 +181,7 @@ def predict(
             errors.append(str(error))
             continue
         rows.append(row)
-    lines = [] if out is None else _write_columns(rows, out)
+    lines = _write_columns(rows, files) if files else []
     terminal = console(120)
     for row in rows:
         terminal.print(measured.numbers_table(row))
@@ -204,20 +205,28 @@ def _path(specimen: Specimen, drifts: Array | None) -> Array | None:
     return None
 
 
-def _write_columns(rows: Sequence[Prediction], folder: Path) -> list[str]:
+def _claimed(tests: Sequence[Specimen], folder: Path) -> dict[str, list[Path]]:
+    """Return the files of the tests, csv and figure, by name; "" has that of the numbers."""
+    short = [re.sub(r"[^\w.-]+", "_", test.name)[:80] for test in tests]
+    names = [f"{number}_{name}" for number, name in enumerate(short, 1)]
+    endings = [f"{name}{ending}" for name in names for ending in (".csv", ".png")]
+    numbers, *files = claim_folder(folder, ["numbers.csv", *endings])
+    pairs = zip(files[::2], files[1::2], strict=True)
+    return {"": [numbers]} | {t.name: list(p) for t, p in zip(tests, pairs, strict=True)}
+
+
+def _write_columns(rows: Sequence[Prediction], files: Mapping[str, Sequence[Path]]) -> list[str]:
     """Write the files; return lines that say which."""
-    folder.mkdir(parents=True, exist_ok=True)
-    files = [folder / "numbers.csv"]
-    save_frame(scores(rows), files[0])
-    for number, row in enumerate(rows, 1):
-        name = re.sub(r"[^\w.-]+", "_", row.specimen.name)[:80]
-        target = folder / f"{number}_{name}.csv"
+    written = [*files[""]]
+    save_frame(scores(rows), written[0])
+    for row in rows:
+        table, figure = files[row.specimen.name]
         if row.band is not None:
-            row.band.to_csv(target)
-            files.append(target)
-        files.append(target.with_suffix(".png"))
-        write_figure(draw_prediction(row), files[-1], dpi=160)
-    return [f"wrote {file}" for file in files]
+            row.band.to_csv(table)
+            written.append(table)
+        written.append(figure)
+        write_figure(draw_prediction(row), figure, dpi=160)
+    return [f"wrote {file}" for file in written]
 
 
 @click.command("verify")

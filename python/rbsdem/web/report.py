@@ -1,4 +1,4 @@
-"""A report: one html file that needs no network, with its tables as csv beside it.
+"""A report: one html file that needs no network, with a folder of its tables as csv.
 
 Sheets have a heading, a text, figures and a table. A column has besides, between its sheets, the
 page with its results inside.
@@ -20,7 +20,7 @@ from typing import Any, get_args
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._files import atomic_write, data_frame, figure_bytes, save_frame
+from rbsdem._files import atomic_write, claim_folder, data_frame, figure_bytes, save_frame
 from rbsdem._types import DataFrame
 from rbsdem.checks.acceptance import Assessment, between, rows_at
 from rbsdem.checks.code_values import code_values
@@ -84,7 +84,7 @@ class Sheet:
     table : DataFrame or None
         Its table, which is written beside the report, too.
     beside : bool
-        Whether the table is written beside the report only, as long ones are.
+        Whether the table is in the folder of tables only, as long ones are.
     """
 
     heading: str
@@ -201,15 +201,17 @@ def report(
     """Write a report as one html file that opens offline and prints on A4.
 
     It has the inputs with their units and meanings, drawings and figures, limit states, values of
-    codes, and tables. All tables are written beside it as csv, the case as ``.nml``. A column made
-    from its drawing has its section, moment-curvature and interaction, too.
+    codes, and tables. All tables as csv and the case, ``case.nml``, are in a folder beside it,
+    NAME_files. A column made from its drawing has its section, moment-curvature and interaction,
+    too.
 
     Parameters
     ----------
     record : Result, FrameResult, Assessment, Section, Ensemble or IDA
         What it is about.
     path : path-like
-        File to write; the names of the others begin with its own.
+        File to write. In the folder beside it the files of an earlier report are replaced; a file
+        that rbsdem did not write there is refused, not written over.
     title, author, project, date : str, optional
         For its head; the date is that of today.
     **asked
@@ -222,6 +224,22 @@ def report(
     Path
         The file.
     """
+    return write_record(
+        record, path, title=title, author=author, project=project, date=date, **asked
+    )[0]
+
+
+def write_record(
+    record: Any,
+    path: str | os.PathLike[str],
+    *,
+    title: str | None = "",
+    author: str | None = "",
+    project: str | None = "",
+    date: str | None = None,
+    **asked: Any,
+) -> list[Path]:
+    """Write a report as `report` does; return all of its files."""
     for name, text in (("title", title), ("author", author), ("project", project), ("date", date)):
         if not isinstance(text, str | None):
             raise InputError(f"report: {name} = {_arguments.shown(text)} must be a text")
@@ -230,17 +248,18 @@ def report(
     target = Path(path)
     title = title or (case.title if case else "") or target.stem
     data = _column_data(record, case, title) if case and isinstance(record, Result) else None
-    front = _head(title, author, project, date) + _html(sheets[0])
+    front = _head(title, author or "", project or "", date) + _html(sheets[0])
     # Sheets whose table alone is beside the report have nothing to show.
     behind = "".join(_html(sheet) for sheet in sheets[1:] if sheet.figures or not sheet.beside)
-    made = _write(target, one_file(title, data, REPORT if data else (), (front, behind)))
-    for sheet in sheets:
-        if sheet.table is not None:
-            save_frame(sheet.table, target.with_name(f"{target.stem}_{sheet.name}.csv"))
+    page = one_file(title, data, REPORT if data else (), (front, behind))
+    tables = {f"{sheet.name}.csv": sheet.table for sheet in sheets if sheet.table is not None}
+    names = [*tables, *(["case.nml"] if case else [])]
+    files = claim_folder(target.with_name(f"{target.stem}_files"), names, anew=True)
+    for table, file in zip(tables.values(), files, strict=False):
+        save_frame(table, file)
     if case is not None:
-        with atomic_write(target.with_suffix(".nml")) as file:
-            file.write(case.to_namelist().encode())
-    return made
+        _write(files[-1], case.to_namelist())
+    return [_write(target, page), *files]
 
 
 def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]:
