@@ -42,8 +42,8 @@ contains
       case ('bilinear');      call enter(bilinear_rule(), anywhere)
       case ('takeda');        call enter(takeda_rule(), in_joints)
       case ('compression');   call enter(compression_rule(), across_joints)
-      case ('peak_oriented'); call enter(peak_oriented_rule(), in_joints)
-      case ('pinching');      call enter(pinching_rule(), in_joints)
+      case ('peak_oriented'); call enter(peak_oriented_rule(), in_joints//' '//in_axial)
+      case ('pinching');      call enter(pinching_rule(), in_joints//' '//in_axial)
       case ('concrete');      call enter(concrete_rule(), across_joints)
       case ('steel');         call enter(steel_rule(), anywhere)
       ! Its layers are springs with parameters of their own.

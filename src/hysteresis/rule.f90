@@ -35,7 +35,8 @@ module rbs_hysteresis_rule
 
    !> The parameters of a spring, which do not change once they are prepared. `visit` presents their keys.
    type, extends(visited_record), abstract :: rule_type
-      !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad]
+      !> Stiffness of the virgin spring, of the stiffer side if they differ, of half of it if the other side
+      !> carries nothing [N/m or N m/rad]
       real(wp) :: initial_stiffness = 0.0_wp
       !> Whether the spring decays with the work of the flexural spring of its joint
       logical :: uses_flexural_work = .false.

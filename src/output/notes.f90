@@ -11,7 +11,7 @@ module rbs_output_notes
    use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
    use rbs_structure_column_column_record, only: column_record
-   use rbs_structure_frame_frame_checks, only: is_rigid
+   use rbs_structure_frame_frame_checks, only: is_rigid, is_strut
    use rbs_structure_frame_frame_record, only: frame_record
    use rbs_structure_structure, only: structure_type, horizontal, small, finite
    implicit none
@@ -162,7 +162,7 @@ contains
       allocate (rigid(size(frame%kind)))
       do i = 1, size(frame%kind)
          associate (kind => frame%kind(i), owner => "member_kind '"//trim(frame%kind(i)%name)//"': ")
-            rigid(i) = is_rigid(kind, frame%spring)
+            rigid(i) = is_rigid(kind, frame%spring) .or. is_strut(kind, frame%spring)
             if (rigid(i)) cycle
             if (kind%modulus < least_modulus .or. kind%modulus > largest_modulus) then
                call notes%add(owner//'modulus = '//to_text(kind%modulus)// &

@@ -59,6 +59,12 @@ class FrameMember:
     interior : {"elastic", "rigid"}, optional
         Part between the springs: the elastic beam, or nothing that bends, where the springs
         hold all of the flexibility. Without springs a "rigid" member does not deform (`rigid`).
+    ends : {"continuous", "pinned"}, optional
+        How it joins its nodes. A member with pinned ends carries axial force alone, and may have an
+        axial spring alone; a load on it goes to its nodes.
+    after_dead_load : bool, optional
+        Whether it is built when the dead load acts already, as infills, jackets and braces are: it
+        carries none of it, and its springs count from the frame as it stands then.
     rigid_end : float or pair of float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
         member [m]; not at the base. Two of them are those at its start and at its end.
@@ -86,6 +92,8 @@ class FrameMember:
     shear: Spring | Mapping[float, Spring] | None = None
     axial_spring: Spring | None = None
     interior: Literal["elastic", "rigid"] = "elastic"
+    ends: Literal["continuous", "pinned"] = "continuous"
+    after_dead_load: bool = False
     rigid_end: float | tuple[float, float] = 0.0
     failure_drift: float | None = None
     failure_load: float | None = None
@@ -118,10 +126,19 @@ class FrameMember:
         """
         return cls(1.0, 1.0, 1.0, interior="rigid", **more)
 
+    @classmethod
+    def strut(cls, spring: Spring, **more: Any) -> FrameMember:
+        """Return a kind of one axial spring between two pins, with `after_dead_load` and `name`.
+
+        A spring that carries compression alone is `Compression`, or `PeakOriented` and `Pinching`
+        with ``f_y=0`` and the strength ``f_y_neg`` on the other side.
+        """
+        return cls(1.0, 1.0, 1.0, axial_spring=spring, interior="rigid", ends="pinned", **more)
+
     def _elastic(self) -> dict[str, float]:
-        """Return modulus, area and inertia, which a rigid kind has none of."""
+        """Return modulus, area and inertia, which a rigid kind and a strut have none of."""
         springs = self.flexure, self.shear, self.axial_spring, self.yield_moment
-        if self.interior == "rigid" and not any(springs):
+        if self.interior == "rigid" and (self.ends == "pinned" or not any(springs)):
             return {}
         return {"modulus": self.modulus, "area": self.area, "inertia": self.inertia}
 
@@ -149,6 +166,8 @@ class FrameMember:
                 "failure_load": self.failure_load,
                 "shear_drift": self.shear_drift,
                 "interior": None if self.interior == "elastic" else self.interior,
+                "ends": None if self.ends == "continuous" else self.ends,
+                "after_dead_load": self.after_dead_load or None,
             },
         )
         for group in ("flexure", "shear"):

@@ -81,7 +81,7 @@ class Spring:
         """Return where the virgin spring cracks, yields and caps, by the table of its rule."""
         found: list[Landmark] = []
         for name, key in self.turns.items():
-            for side in self.sides:
+            for side in filter(self._carries, self.sides):
                 # A side without values of its own has those of the other.
                 own = f"{key}_neg"
                 known = own if side < 0 and getattr(self, own, None) is not None else key
@@ -90,6 +90,10 @@ class Spring:
                 if at > 0:
                     found.append(Landmark(name, side, at, known))
         return found
+
+    def _carries(self, side: int) -> bool:
+        """Whether a side has any strength."""
+        return side in self.sides
 
     def statement(self, group: str, **place: Any) -> _core.Statement:
         """Return the keys of the spring as a group of a case.
@@ -370,7 +374,8 @@ class PeakOriented(Spring):
     Parameters
     ----------
     d_y, f_y : float
-        Yield point [m], [N].
+        Yield point [m], [N]. A side whose `f_y` is 0 carries nothing: a strut that only touches
+        has ``f_y=0`` and its strength in `f_y_neg`.
     d_cap, f_cap : float
         Capping point, the largest force [m], [N]; from `d_y`, `f_y` on.
     d_pc : float
@@ -438,6 +443,10 @@ class PeakOriented(Spring):
     lambda_h: float = 0.0
     s_min: float = 0.0
     fade: float = 0.0
+
+    def _carries(self, side: int) -> bool:
+        other = side < 0 and self.f_y_neg is not None
+        return bool((self.f_y_neg if other else self.f_y) > 0)  # type: ignore[operator]
 
 
 @dataclass(frozen=True, kw_only=True)

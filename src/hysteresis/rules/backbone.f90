@@ -15,7 +15,8 @@
 !>               /                          \  slope -f_y/d_y
 !>              0   d_c  d_y  d_cap          d_u       deformation
 !>
-!> All values are positive on both sides.
+!> All values are positive on both sides. A side whose f_y is zero carries nothing, as a strut that opens or a
+!> tie that goes slack; its other values do nothing.
 module rbs_hysteresis_rules_backbone
    use rbs_base_check, only: check_order, is_given
    use rbs_base_constants, only: unbounded, unset
@@ -49,6 +50,7 @@ module rbs_hysteresis_rules_backbone
    contains
       procedure :: visit
       procedure :: completed
+      procedure :: carries
       procedure :: check
       procedure :: stiffness
    end type backbone_parameters
@@ -82,6 +84,7 @@ contains
       self%last = 0
       self%d_y = 0.0_wp
       associate (b => given)
+         if (.not. b%carries()) return
          ! Residual strength does not deteriorate.
          self%strength = max(self%strength, b%f_res/b%f_y)
          if (.not. self%strength > 0.0_wp) return
@@ -243,7 +246,7 @@ contains
       logical, intent(in) :: negative
 
       call key('d_y', self%d_y, deformation, above_zero, 'yield deformation')
-      call key('f_y', self%f_y, key_force, above_zero, 'yield force')
+      call key('f_y', self%f_y, key_force, not_negative, 'yield force; 0: this side carries nothing')
       call key('d_cap', self%d_cap, deformation, above_zero, 'deformation at the cap, from d_y on')
       call key('f_cap', self%f_cap, key_force, above_zero, 'largest force, from f_y on')
       call key('d_pc', self%d_pc, deformation, above_zero, &
@@ -295,6 +298,7 @@ contains
       character(len=*), intent(in) :: name, suffix
       type(message_list), intent(inout) :: messages
 
+      if (.not. self%carries()) return
       call check_cracking(self, name, suffix, messages)
       call require('d_cap', self%d_cap, 'must not be below', 'd_y', self%d_y, 'the cap comes after yield')
       call require('f_cap', self%f_cap, 'must not be below', 'f_y', self%f_y, &
@@ -346,12 +350,19 @@ contains
       end if
    end subroutine check_cracking
 
+   !> Whether the side has any strength.
+   elemental logical function carries(self)
+      class(backbone_parameters), intent(in) :: self
+
+      carries = self%f_y > 0.0_wp
+   end function carries
+
    !> Stiffness of the virgin spring on this side [N/m].
    elemental real(wp) function stiffness(self)
       class(backbone_parameters), intent(in) :: self
 
       stiffness = self%f_y/self%d_y
-      if (self%d_c > 0.0_wp) stiffness = self%f_c/self%d_c
+      if (self%carries() .and. self%d_c > 0.0_wp) stiffness = self%f_c/self%d_c
    end function stiffness
 
 end module rbs_hysteresis_rules_backbone

@@ -4,7 +4,8 @@
 !>     virgin      elastic up to cracking or yield
 !>     backbone    from corner to corner (`rbs_hysteresis_rules_backbone`); turning back: unloading
 !>     unloading   both ways, to zero force, or back to its start, from where the line before continues
-!>     gap         without force to where reloading starts, in a part that slips
+!>     gap         without force to where reloading starts, in a part that slips; on a side that carries
+!>                 nothing as far as the motion goes, and back to where it began
 !>     reloading   from zero force to the newest open turn of the side, on along the line that was left
 !>                 there, so to all older ones, to the peak, then along the backbone; turning back: unloading
 !>
@@ -56,12 +57,14 @@ contains
       type(capped_part), intent(in) :: self
       type(capped_state), intent(in) :: now
       integer, intent(in) :: s
-      real(wp) :: near
+      real(wp) :: near, far
 
       branch = segment(k=self%given(s)%stiffness())
       near = 0.0_wp
       if (.not. abs(branch%k - self%given(-s)%stiffness()) > 0.0_wp) near = -s*now%backbone(-s)%d(1)
-      call branch%lead_outward(s, near=near, far=s*now%backbone(s)%d(1), includes_near_end=near*s >= 0.0_wp, &
+      far = s*unbounded
+      if (self%given(s)%carries()) far = s*now%backbone(s)%d(1)
+      call branch%lead_outward(s, near=near, far=far, includes_near_end=near*s >= 0.0_wp, &
                                unload_on_reversal=.false.)
    end function virgin_branch
 
@@ -208,6 +211,12 @@ contains
          now%side = s
          now%begun = point(zero, 0.0_wp)
          now%entered = s*zero
+         if (.not. part%given(s)%carries()) then
+            now%branch = gap
+            branch = segment(d0=zero)
+            call branch%lead_outward(s, near=zero, far=s*unbounded, unload_on_reversal=.false.)
+            return
+         end if
          if (part%deterioration%acts() .or. part%hinge_work > 0.0_wp) call deteriorate(spring, s)
          now%start_at = s*zero
          if (part%slips) then

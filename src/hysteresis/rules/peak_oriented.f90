@@ -85,6 +85,8 @@ contains
 
       associate (part => self%part(1))
          part%given(-1) = part%given(-1)%completed(part%given(1))
+         ! A side without strength has no cracking force that the other one could unload to.
+         where (.not. part%given%carries()) part%given%f_c = 0.0_wp
          energy = energy_of(part)
          part%deterioration = deterioration_type(self%lambda(1)*energy, self%lambda(2)*energy, &
                                                  self%lambda(3)*energy, self%lambda(4)*energy, &
@@ -92,6 +94,8 @@ contains
          part%hinge_work = self%lambda_h*energy
          part%k_0 = max(part%given(1)%stiffness(), part%given(-1)%stiffness())
          self%initial_stiffness = part%k_0
+         ! The mean of both sides: two struts that cross have the stiffness of the one that is compressed.
+         if (.not. all(part%given([1, -1])%carries())) self%initial_stiffness = 0.5_wp*part%k_0
          self%uses_flexural_work = part%hinge_work > 0.0_wp
       end associate
    end subroutine prepare
@@ -122,9 +126,16 @@ contains
 
       call self%prepare()
       known = messages%count
+      if (.not. any(self%part(1)%given([1, -1])%carries())) then
+         call messages%add(name//': f_y = 0 and f_y_neg = 0: neither side carries anything; give one of '// &
+                           'them strength')
+         return
+      end if
       call self%part(1)%given(1)%check(name, '', messages)
       ! Otherwise errors of the positive side would be reported twice.
       if (messages%count == known) call self%part(1)%given(-1)%check(name, '_neg', messages)
+      if (messages%count > known) return
+      if (.not. all(self%part(1)%given([1, -1])%carries())) call refuse_idle_decay()
       if (messages%count > known) return
       call check_capacity(self%part(1)%deterioration%strength, 'lambda_s')
       call check_capacity(self%part(1)%deterioration%softening, 'lambda_c')
@@ -132,6 +143,21 @@ contains
       call check_capacity(self%part(1)%deterioration%target, 'lambda_a')
 
    contains
+
+      !> Strength, softening line and target of a side follow the work of the other one, which is none here.
+      subroutine refuse_idle_decay()
+         character(len=*), parameter :: key(3) = [character(len=8) :: 'lambda_s', 'lambda_c', 'lambda_a']
+         real(wp) :: given(3)
+         integer :: i
+
+         given = self%lambda([1, 2, 4])
+         do i = 1, 3
+            if (.not. given(i) > 0.0_wp) cycle
+            call messages%add(name//': '//trim(key(i))//' = '//to_text(given(i))//' does nothing in a '// &
+                              'spring of one side, as a side deteriorates by the work of the other one; '// &
+                              'remove it')
+         end do
+      end subroutine refuse_idle_decay
 
       !> Nothing deteriorates faster over the deformation than the spring is stiff.
       subroutine check_capacity(capacity, key)

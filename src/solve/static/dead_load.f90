@@ -65,6 +65,7 @@ contains
 
       if (.not. frame%axially_loaded .or. .not. any(frame%element%compression > 0.0_wp)) return
       loaded = frame
+      call loaded%leave_out_later()
       call matrix%create(frame%unknowns, frame%half_width)
       low = 0.0_wp
       high = 1.0_wp
@@ -115,15 +116,17 @@ contains
       type(frame_type), intent(inout), target :: frame
       type(end_state), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
-      type(frame_type), target :: unloaded
+      type(frame_type), target :: bare, unloaded
       type(equilibrium_type), target :: equilibrium
       type(array_recorder), target :: nothing
       type(task_type), target :: task
       type(checkpoint_type) :: checkpoint
       type(spring_array) :: springs
 
-      call equilibrium%create(frame, .true.)
-      unloaded = frame
+      bare = frame
+      call bare%leave_out_later()
+      call equilibrium%create(bare, .true.)
+      unloaded = bare
       call unloaded%take_load_off()
       task%recorder => nothing
       task%keeps_end = .true.
@@ -132,6 +135,7 @@ contains
       call frame%create_springs(springs, frame%constant_axial)
       call task%after%restore(frame, checkpoint, springs, error)
       if (allocated(error)) return
+      call frame%build_later(springs%d)
       call frame%set_compression(springs%d, springs%forces(springs%d))
       ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
       checkpoint%force = 0.0_wp

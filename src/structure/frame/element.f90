@@ -93,6 +93,10 @@ module rbs_structure_frame_element
       real(wp) :: load_across = 0.0_wp, dead_rotation(2) = 0.0_wp
       !> Whether it is the panel of a node: one spring that deforms by the rotation of columns against beams
       logical :: is_panel = .false.
+      !> Whether its ends turn without moments, and whether it is built under the dead load; elongation and
+      !> rotations of its ends when it is built
+      logical :: pinned = .false., after_dead_load = .false.
+      real(wp) :: built_at(3) = 0.0_wp
       type(tangent_layout) :: layout
       !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); motion
       !> (w, theta) of each by axial force and end moments (3, 2, joints); distances of the layers
@@ -107,6 +111,7 @@ module rbs_structure_frame_element
       real(wp), allocatable :: arm(:, :, :), y(:)
    contains
       procedure :: leave_out_supports
+      procedure :: disconnect
       procedure :: lay_out
       procedure :: bend_as_springs
       procedure :: set_rest
@@ -132,6 +137,16 @@ contains
          end if
       end do
    end subroutine leave_out_supports
+
+   !> Let no unknown move it, as long as it is not built.
+   pure subroutine disconnect(self)
+      class(frame_element), intent(inout) :: self
+
+      self%to_basic = 0.0_wp
+      self%from_unknowns = 0.0_wp
+      self%lean = 0.0_wp
+      self%built_at = 0.0_wp
+   end subroutine disconnect
 
    !> E I of a member whose springs hold all of its flexibility: under a moment that is constant it leaves its
    !> chord by the same mean. Springs at its ends alone leave the chord straight.
@@ -185,12 +200,13 @@ contains
       self%share = reshape([springs, 1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp], [2, self%bending + 2])
    end subroutine set_rest
 
-   !> Whether it buckles under compression [N] where its ends are clamped.
+   !> Whether it buckles under compression [N] where its ends are clamped, or between its pins.
    pure logical function buckles(self, compression)
       class(frame_element), intent(in) :: self
       real(wp), intent(in) :: compression
 
-      buckles = compression*self%length**2 >= 4.0_wp*largest_x*self%flexural_rigidity &
+      buckles = compression*self%length**2 >= &
+                merge(1.0_wp, 4.0_wp, self%pinned)*largest_x*self%flexural_rigidity &
                 .and. self%flexural_rigidity > 0.0_wp
    end function buckles
 

@@ -68,8 +68,8 @@ contains
       rotation = sum(e%lean(3, :)*x(e%unknown))
    end function chord_rotation
 
-   !> Motion of the ends of an element less that which its springs and its dead load make: the part that its
-   !> elastic rest has to follow.
+   !> Motion of the ends of an element since it was built, less that which its springs and its dead load make:
+   !> the part that its elastic rest has to follow.
    pure function compatibility_error(e, q, d, dead) result(misfit)
       type(frame_element), intent(in) :: e
       !> Motion of the ends; deformations of all springs; share of the dead load that acts
@@ -78,7 +78,7 @@ contains
       real(wp) :: misfit(3)
       integer :: j
 
-      misfit = q
+      misfit = q - e%built_at
       misfit(2:) = misfit(2:) - dead*e%dead_rotation
       if (e%layered) then
          call take_joints_off(size(e%motion), e%motion, e%is_single, e%arm, d, misfit)

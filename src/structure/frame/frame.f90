@@ -78,6 +78,8 @@ module rbs_structure_frame_frame
       procedure :: work_of_dead_load
       procedure :: is_loaded
       procedure :: take_load_off
+      procedure :: leave_out_later
+      procedure :: build_later
       procedure :: set_compression
       procedure :: compress
       procedure :: drop_round_off
@@ -112,6 +114,18 @@ module rbs_structure_frame_frame
       pure module subroutine take_load_off(self)
          class(frame_type), intent(inout) :: self
       end subroutine take_load_off
+
+      !> Leave out members that are built under the dead load: nothing moves them.
+      pure module subroutine leave_out_later(self)
+         class(frame_type), intent(inout) :: self
+      end subroutine leave_out_later
+
+      !> Build these members without forces into the frame as it stands.
+      pure module subroutine build_later(self, d)
+         class(frame_type), intent(inout) :: self
+         !> Deformations of the springs and unknowns
+         real(wp), intent(in), contiguous :: d(:)
+      end subroutine build_later
 
       !> Take the axial forces of the elements under dead load.
       module subroutine set_compression(self, d, f)

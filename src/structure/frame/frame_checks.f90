@@ -10,7 +10,7 @@ module rbs_structure_frame_frame_checks
    implicit none
    private
 
-   public :: check_values, check_reference, is_rigid, group_of
+   public :: check_values, check_reference, is_rigid, is_strut, group_of
 
    !> A mechanism of sections that harden less is known to fewer digits than its energies are checked to.
    real(wp), parameter :: least_hardening = 1.0e-7_wp
@@ -36,7 +36,7 @@ contains
       do i = 1, size(record%kind)
          associate (k => record%kind(i))
             known = messages%count
-            if (is_rigid(k, record%spring)) then
+            if (is_rigid(k, record%spring) .or. is_strut(k, record%spring)) then
                ! They do nothing, and need not be given.
                k%modulus = 1.0_wp
                k%area = 1.0_wp
@@ -168,7 +168,17 @@ contains
                   any(softens(record%spring, kind%name))) then
             call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
                               "or a shear spring of the rule 'peak_oriented' or 'pinching'")
-         else if (kind%interior == 'rigid' .and. .not. (most > least .or. is_rigid(kind, record%spring))) then
+         else if (kind%ends == 'pinned' .and. (bending > 0 .or. most > 0.0_wp .or. &
+                                               is_given(kind%yield_moment) .or. &
+                                               kind%shear_rigidity > 0.0_wp)) then
+            call messages%add(name//": with ends = 'pinned' it carries axial force alone; remove "// &
+                              'yield_moment, shear_rigidity and the springs that turn or slip')
+         else if (kind%ends == 'pinned' .and. kind%interior == 'rigid' .and. &
+                  .not. is_strut(kind, record%spring)) then
+            call messages%add(name//": with ends = 'pinned' and interior = 'rigid' all of its "// &
+                              'flexibility is in a spring; give it an axial_spring, or another interior')
+         else if (kind%interior == 'rigid' .and. .not. (most > least .or. is_rigid(kind, record%spring) &
+                                                        .or. is_strut(kind, record%spring))) then
             call messages%add(name//": with interior = 'rigid' all bending is in springs; give it two "// &
                               'flexural springs or more, at different positions, or none if it is rigid')
          end if
@@ -183,6 +193,14 @@ contains
       is_rigid = kind%interior == 'rigid' .and. .not. (is_given(kind%yield_moment) .or. &
                                                        any(spring%kind == kind%name))
    end function is_rigid
+
+   !> Whether members of a kind are springs between two pins, and nothing else.
+   pure logical function is_strut(kind, spring)
+      type(kind_record), intent(in) :: kind
+      type(frame_spring), intent(in) :: spring(:)
+
+      is_strut = kind%interior == 'rigid' .and. kind%ends == 'pinned' .and. any(spring%kind == kind%name)
+   end function is_strut
 
    !> Springs of a kind that may fail in shear.
    elemental logical function softens(spring, kind)

@@ -3,7 +3,7 @@ module rbs_structure_frame_frame_kinds
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_structure_frame_frame_checks, only: group_of, is_rigid
+   use rbs_structure_frame_frame_checks, only: group_of, is_rigid, is_strut
    use rbs_structure_frame_frame_record, only: kind_record, frame_spring
    use rbs_structure_frame_new_frame, only: frame_member
    use rbs_structure_spring_location, only: shear, flexure, axial, layer
@@ -46,12 +46,14 @@ contains
       allocate (m%kind(0), m%joint(0), m%position(0), m%y(0), m%spring(0))
       rigidity = clear*stiffness_of(kind, clear)
       if (is_rigid(kind, spring)) rigidity = clear*rigid*stiffest
+      ! All of its flexibility is in its springs.
+      if (is_strut(kind, spring)) rigidity = [0.0_wp, clear**3*stiffness_of_springs(kind, spring)]
       m%axial = rigidity(1)
       m%failure_drift = kind%failure_drift
       m%failure_load = kind%failure_load
       m%shear_drift = kind%shear_drift
       if (is_given(kind%yield_moment) .or. &
-          (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
+          (is_given(m%lost_at) .and. all(spring%kind /= kind%name) .and. .not. m%pinned)) then
          m%bending = rigidity(2)
          m%lumped = .true.
          do i = 1, 3
@@ -68,7 +70,7 @@ contains
          call add_opening(m, clear)
          return
       end if
-      if (kind%interior == 'elastic' .or. is_rigid(kind, spring)) then
+      if (kind%interior == 'elastic' .or. is_rigid(kind, spring) .or. m%pinned) then
          m%bending = rigidity(2)
          m%sliding = kind%shear_rigidity
       end if
@@ -102,6 +104,18 @@ contains
       m%axial = 0.0_wp
    end subroutine add_opening
 
+   !> Largest stiffness of the springs that open in a kind [N/m].
+   real(wp) function stiffness_of_springs(kind, spring) result(largest)
+      type(kind_record), intent(in) :: kind
+      type(frame_spring), intent(in) :: spring(:)
+      integer :: i
+
+      largest = 0.0_wp
+      do i = 1, size(spring)
+         if (spring(i)%kind == kind%name) largest = max(largest, spring(i)%spring%initial_stiffness())
+      end do
+   end function stiffness_of_springs
+
    type(spring_record) function elastic(stiffness)
       real(wp), intent(in) :: stiffness
 
@@ -110,6 +124,7 @@ contains
    end function elastic
 
    !> Whether a member without the forces of its springs carries nothing: they bend in two ways, and open.
+   !> One with pinned ends only opens.
    pure logical function can_be_lost(m)
       type(frame_member), intent(in) :: m
 
@@ -117,6 +132,7 @@ contains
          can_be_lost = any(m%kind == layer .or. m%kind == axial) .and. any(bends)
          if (can_be_lost) can_be_lost = any(m%kind == shear) .or. &
                                         maxval(m%position, mask=bends) > minval(m%position, mask=bends)
+         can_be_lost = can_be_lost .or. (m%pinned .and. any(m%kind == axial))
       end associate
    end function can_be_lost
 

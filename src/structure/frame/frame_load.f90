@@ -23,6 +23,24 @@ contains
       end do
    end procedure take_load_off
 
+   module procedure leave_out_later
+      integer :: i
+
+      do i = 1, self%members
+         if (self%element(i)%after_dead_load) call self%element(i)%disconnect()
+      end do
+   end procedure leave_out_later
+
+   module procedure build_later
+      integer :: i
+
+      do i = 1, self%members
+         associate (e => self%element(i))
+            if (e%after_dead_load) e%built_at = end_motion(e, d(self%springs + 1:))
+         end associate
+      end do
+   end procedure build_later
+
    module procedure set_compression
       real(wp) :: s(3)
       integer :: i

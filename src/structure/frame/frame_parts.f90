@@ -5,7 +5,7 @@ module rbs_structure_frame_frame_parts
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_frame_frame_checks, only: check_values, check_reference, is_rigid, group_of
+   use rbs_structure_frame_frame_checks, only: check_values, check_reference, is_rigid, is_strut, group_of
    use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost, stiffness_of
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record, kind_record
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
@@ -58,6 +58,7 @@ contains
       call put_losses(self, record, messages)
       call put_kinds(self, record, messages)
       call hold_idle(self)
+      call hold_between_pins(self)
       call check_geometry(self, messages)
       if (messages%count > known) return
       call choose_top(self, record, messages)
@@ -403,6 +404,18 @@ contains
          end associate
       end do
       self%member = self%member(:self%members)
+      do i = 1, self%members
+         associate (member => self%member(i))
+            if (member%kind_of < 1) cycle
+            member%pinned = record%kind(member%kind_of)%ends == 'pinned'
+            member%after_dead_load = record%kind(member%kind_of)%after_dead_load
+            if (member%after_dead_load .and. abs(member%load) > 0.0_wp) then
+               call messages%add('member '//trim(member%name)//' is built after the dead load, and its '// &
+                                 'load of '//to_text(member%load)//' N/m would do nothing; give that to '// &
+                                 'its nodes, as load_y')
+            end if
+         end associate
+      end do
    end subroutine put_members
 
    !> Springs between nodes and the ground, where 'base' means all nodes of floor 0, and in panels.
@@ -458,8 +471,8 @@ contains
       integer :: i
 
       any_node = .false.
-      has_beam = end_nodes(self, .true.)
-      has_column = end_nodes(self, .false.)
+      has_beam = end_nodes(self, .true., turns=.true.)
+      has_column = end_nodes(self, .false., turns=.true.)
       do i = 1, size(self%node)
          associate (node => self%node(i))
             if (given%panel == 'all') then
@@ -487,10 +500,11 @@ contains
       end if
    end subroutine put_panel
 
-   !> Nodes that beams end in, or columns.
-   pure function end_nodes(self, beams) result(ends)
+   !> Nodes that beams end in, or columns; only those that turn with the node, or that carry the dead load.
+   pure function end_nodes(self, beams, turns, before_load) result(ends)
       type(frame_parts), intent(in) :: self
       logical, intent(in) :: beams
+      logical, intent(in), optional :: turns, before_load
       logical :: ends(size(self%node))
       integer :: i
 
@@ -498,6 +512,8 @@ contains
       do i = 1, size(self%member)
          associate (of => self%member(i)%node)
             if (any(of == 0)) cycle
+            if (present(turns) .and. self%member(i)%pinned) cycle
+            if (present(before_load) .and. self%member(i)%after_dead_load) cycle
             if (is_beam(self%node(of(1)), self%node(of(2))) .eqv. beams) ends(of) = .true.
          end associate
       end do
@@ -546,7 +562,7 @@ contains
             if (.not. clear > 0.0_wp) cycle
             if (all_rigid) then
                stiffest = max(stiffest, [held(along), held(3 - along)*clear**2 + held(3)])
-            else if (.not. is_rigid(kind, record%spring)) then
+            else if (.not. (is_rigid(kind, record%spring) .or. is_strut(kind, record%spring))) then
                stiffest = max(stiffest, stiffness_of(kind, clear))
             end if
          end associate
@@ -621,10 +637,12 @@ contains
       type(frame_parts), intent(in) :: self
       type(message_list), intent(inout) :: messages
       real(wp) :: near
-      logical :: has_member(size(self%node))
+      logical :: has_member(size(self%node)), is_carried(size(self%node))
       integer :: i, j
 
       has_member = end_nodes(self, .true.) .or. end_nodes(self, .false.)
+      is_carried = end_nodes(self, .true., before_load=.true.) .or. &
+                   end_nodes(self, .false., before_load=.true.)
       near = one_place*(maxval(self%node%x) - minval(self%node%x) + maxval(self%node%y) - minval(self%node%y))
       do i = 1, size(self%node)
          associate (node => self%node(i))
@@ -636,8 +654,15 @@ contains
             end do
             if (.not. has_member(i) .and. (node%storey /= 0 .or. i > self%grid_nodes)) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
+            else if (has_member(i) .and. .not. is_carried(i) .and. &
+                     .not. all(node%held .or. node%ground%rule /= '')) then
+               call messages%add("node '"//trim(node%name)//"' is joined by nothing but members that are "// &
+                                 'built after the dead load; give it a support, or join it to the others')
             end if
-            if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
+            if (node%held(3) .and. abs(node%load(3)) > 0.0_wp .and. .not. all(node%held)) then
+               call messages%add("node '"//trim(node%name)//"' does not turn, and its load_moment does "// &
+                                 'nothing; remove it, or join a member that is not pinned')
+            else if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
                call messages%add("node '"//trim(node%name)//"' is held, "// &
                                  'and its load does nothing; remove '// &
                                  'the load, or free the node')
@@ -646,6 +671,8 @@ contains
       end do
       do i = self%grid_members + 1, size(self%member)
          do j = 1, i - 1
+            ! A jacket is beside its column, and is built later.
+            if (self%member(i)%after_dead_load .neqv. self%member(j)%after_dead_load) cycle
             if (any(self%member(i)%node /= self%member(j)%node) .and. &
                 any(self%member(i)%node([2, 1]) /= self%member(j)%node)) cycle
             call messages%add('members '//trim(self%member(j)%name)//' and '//trim(self%member(i)%name)// &
@@ -673,6 +700,19 @@ contains
          self%node(i)%ground%rule = ''
       end do
    end subroutine hold_idle
+
+   !> A node that all members turn freely in does not turn itself.
+   subroutine hold_between_pins(self)
+      type(frame_parts), intent(inout) :: self
+      logical :: turned(size(self%node))
+      integer :: i
+
+      turned = end_nodes(self, .true., turns=.true.) .or. end_nodes(self, .false., turns=.true.)
+      do i = 1, size(self%node)
+         if (turned(i) .or. self%node(i)%ground(3)%rule /= '') cycle
+         self%node(i)%held(3) = .true.
+      end do
+   end subroutine hold_between_pins
 
    !> The controlled node, whose displacement is that of the top.
    subroutine choose_top(self, record, messages)

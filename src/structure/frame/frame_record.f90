@@ -39,7 +39,8 @@ module rbs_structure_frame_frame_record
       real(wp) :: modulus = unset, area = unset, inertia = unset, shear_rigidity = 0.0_wp
       real(wp) :: yield_moment = unset, hardening = 0.0_wp, length = unset
       real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset
-      character(len=8) :: interior = 'elastic'
+      character(len=12) :: interior = 'elastic', ends = 'continuous'
+      logical :: after_dead_load = .false.
    contains
       procedure :: visit => visit_kind
    end type kind_record
@@ -271,6 +272,10 @@ contains
       call v%word('interior', self%interior, 'what is between springs that are given one by one; a '// &
                   '''rigid'' member without springs does not deform, and modulus, area '// &
                   'and inertia do nothing', 'elastic rigid')
+      call v%word('ends', self%ends, 'how it joins its nodes; ''pinned'' ends turn freely, and it '// &
+                  'carries axial force alone', 'continuous pinned')
+      call v%key('after_dead_load', self%after_dead_load, 'whether it is built when the dead load acts '// &
+                 'already, and carries none of it')
    end subroutine visit_kind
 
    subroutine visit_cell(self, v)

@@ -43,9 +43,9 @@ module rbs_structure_frame_new_frame
       !> Lengths of the rigid ends [m]
       real(wp) :: rigid(2) = 0.0_wp
       !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid. Whether springs have the
-      !> flexibility of E I
+      !> flexibility of E I, whether its ends are pinned, and whether it is built under the dead load
       real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
-      logical :: lumped = .false.
+      logical :: lumped = .false., pinned = .false., after_dead_load = .false.
       !> Of springs: kind, joint, position in shares of the clear length, parameters; last those that open.
       !> Layers of a joint follow one another, with their distances from its middle [m]
       integer, allocatable :: kind(:), joint(:)
@@ -317,6 +317,7 @@ contains
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
                e%to_basic(2, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
                e%to_basic(3, :) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
+               if (m%pinned) e%to_basic(2:, :) = 0.0_wp
                e%lean(1, 3) = 1.0_wp
                e%lean(2, 6) = 1.0_wp
                e%lean(3, :) = chord
@@ -328,6 +329,8 @@ contains
                e%flexural_rigidity = m%bending
                e%shear_rigidity = m%sliding
                e%lumped = m%lumped
+               e%pinned = m%pinned
+               e%after_dead_load = m%after_dead_load
                allocate (e%share(2, e%bending), source=0.0_wp)
                do j = 1, size(m%kind)
                   spring(before + j) = m%spring(j)
@@ -466,7 +469,7 @@ contains
                                                m%y, m%joint == m%joint(j), frame%element(i))
          if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
       end do
-      frame%element(i)%load_across = down
+      if (.not. m%pinned) frame%element(i)%load_across = down
       do k = 1, 2
          over_node = per_length*m%rigid(k)
          at = frame%number(2, m%node(k))
