@@ -5,7 +5,7 @@ module rbs_case_drawing_record
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
-   use rbs_base_keys, only: above_zero, any_number, bound_type, one_or_more
+   use rbs_base_keys, only: above_zero, any_number, bound_type, not_negative, one_or_more
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column_record, only: most_bodies
    use rbs_structure_frame_frame_record, only: name_length
@@ -18,8 +18,8 @@ module rbs_case_drawing_record
    public :: drawing_record
 
    !> The groups of a drawing.
-   character(len=12), parameter, public :: drawing_groups(10) = [character(len=12) :: &
-      'drawing', 'section', 'concrete', 'steel', 'bars', 'layout', 'inner_layout', 'ties', 'spiral', &
+   character(len=12), parameter, public :: drawing_groups(11) = [character(len=12) :: &
+      'drawing', 'section', 'concrete', 'steel', 'bars', 'row', 'layout', 'inner_layout', 'ties', 'spiral', &
       'parameter']
 
    !> Bars by number and diameter, on the faces of a rectangle or around a circle.
@@ -35,6 +35,15 @@ module rbs_case_drawing_record
       procedure :: visit => visit_layout
    end type layout_record
 
+   !> A row of equal bars along a face of a rectangle; those of one face follow each other inwards.
+   type, extends(visited_record) :: row_record
+      character(len=8) :: face = ''
+      integer :: number = unset_integer, steel = unset_integer
+      real(wp) :: diameter = unset, clear = unset
+   contains
+      procedure :: visit => visit_row
+   end type row_record
+
    !> A parameter of the model that is not that of its version.
    type, extends(visited_record) :: parameter_record
       character(len=32) :: name = ''
@@ -47,7 +56,8 @@ module rbs_case_drawing_record
       !> By which the members of a frame are named after it
       character(len=name_length) :: name = ''
       type(section_record) :: section
-      !> In place of bars one by one: along the hoops, and along those around a void
+      !> In place of bars one by one: rows along the faces, or along the hoops, and along those around a void
+      type(row_record), allocatable :: rows(:)
       type(layout_record), allocatable :: layout, inner_layout
       !> Version of the parameters of the layered model
       character(len=32) :: version = ''
@@ -77,13 +87,15 @@ contains
       character(len=*), intent(in) :: group
 
       if (.not. allocated(self%section%steels)) allocate (self%section%steels(0))
-      if (.not. allocated(self%parameters)) allocate (self%parameters(0))
+      if (.not. allocated(self%parameters)) allocate (self%parameters(0), self%rows(0))
       if (group == 'ties' .or. group == 'spiral') self%hoops = self%hoops + 1
       select case (group)
       case ('drawing')
          self%stated = .true.
       case ('steel')
          call append_steel(self%section)
+      case ('row')
+         self%rows = [self%rows, row_record()]
       case ('layout')
          allocate (self%layout)
       case ('inner_layout')
@@ -106,6 +118,7 @@ contains
       number = 1
       if (group == 'steel') number = size(self%section%steels)
       if (group == 'parameter') number = size(self%parameters)
+      if (group == 'row') number = size(self%rows)
       if (group == 'layout') number = merge(1, 0, allocated(self%layout))
       if (group == 'inner_layout') number = merge(1, 0, allocated(self%inner_layout))
       if (group == 'ties') number = merge(1, 0, self%section%hoops%kind == ties)
@@ -132,6 +145,8 @@ contains
          call self%section%steels(i)%visit(v)
       case ('bars')
          call self%section%bars%visit(v)
+      case ('row')
+         call self%rows(i)%visit(v)
       case ('layout')
          call self%layout%visit(v)
       case ('inner_layout')
@@ -178,6 +193,20 @@ contains
                  'number of the steel of the bars between the corners, if it differs', optional=.true.)
    end subroutine visit_layout
 
+   subroutine visit_row(self, v)
+      class(row_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('face', self%face, 'face of the row; those of one face follow each other inwards', &
+                  'top bottom side', required=.true.)
+      call v%key('number', self%number, '', one_or_more, 'number of bars; at the side those of each side')
+      call v%key('diameter', self%diameter, 'm', bar_size, 'their diameter')
+      call v%key('clear', self%clear, 'm', not_negative, 'clear distance to the row before it; without '// &
+                 'it the diameter of the thicker bars, 25 mm at least', optional=.true.)
+      call v%key('steel', self%steel, '', any_number, 'number of their steel; without it the first', &
+                 optional=.true.)
+   end subroutine visit_row
+
    subroutine visit_parameter(self, v)
       class(parameter_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -213,6 +242,16 @@ contains
       if (allocated(self%layout) .and. allocated(self%section%bars%y)) then
          call messages%add('bars: there is a layout too; give one of them')
       end if
+      do i = 1, size(self%rows)
+         call self%rows(i)%check('row', messages)
+         if (allocated(self%layout) .or. allocated(self%section%bars%y)) then
+            call messages%add('row: there are bars or a layout too; give one of them')
+         else if (is_given(self%rows(i)%steel) .and. find_steel(self%section, self%rows(i)%steel) == 0) then
+            call messages%add('row: steel is not one of the steels of the section')
+         else if (self%rows(i)%face == 'side' .and. count(self%rows(:i)%face == 'side') > 1) then
+            call messages%add("row: face = 'side' appears twice; it may appear once")
+         end if
+      end do
       if (self%hoops > 1) call messages%add('ties: there is a spiral too; give one of them')
       do i = 1, size(self%parameters)
          call self%parameters(i)%check('parameter', messages)

@@ -380,9 +380,8 @@ def _drawn(width, depth, size, spacing, **more):
 @pytest.fixture
 def grid():
     """Return the frame of the page, with smaller columns above, a slab, and a beam less."""
-    steel, area, y = rbsdem.Steel(450e6), np.pi * 0.016**2 / 4, 0.25 - 0.03 - 0.008 - 0.008
-    bars = [(y, area, steel)] * 4 + [(-y, area, steel)] * 3
-    beam = _drawn(0.3, 0.5, None, 0.15, bars=bars, bar_diameter=0.016)
+    rows = {"top": rbsdem.Bars(4, 0.016), "bottom": rbsdem.Bars(3, 0.016)}
+    beam = _drawn(0.3, 0.5, None, 0.15, steel=rbsdem.Steel(450e6), **rows)
     slab = rbsdem.frames.TeeSection(**beam, flange_width=1.2, flange_thickness=0.12)
     below = rbsdem.RectangularSection(**_drawn(0.4, 0.4, 0.02, 0.1))
     above = rbsdem.RectangularSection(**_drawn(0.3, 0.4, 0.02, 0.1))

@@ -1,9 +1,9 @@
-"""Concrete and reinforcing steel, bars by a regular layout, and the ties or spiral around them."""
+"""Concrete and reinforcing steel, bars by rows or a regular layout, and ties or a spiral."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import ClassVar, Literal
 
@@ -160,6 +160,8 @@ class Steel:
 THICKEST = 0.075
 #: Bars of a layout; more are a mistake, and fill the memory.
 _MOST_BARS = 1000
+#: Between rows of bars [m].
+_LEAST_CLEAR = 0.025
 
 Bar = tuple[float, float, Steel]
 """One bar: distance from mid-depth [m], y > 0 up in a beam; area [m2]; steel."""
@@ -309,6 +311,97 @@ class Layout:
         angles = 2.0 * math.pi * np.arange(self.number) / self.number
         area = _area(self.diameter)
         return [(float(y), area, self.steel) for y in radius * np.cos(angles)]
+
+
+@dataclass(frozen=True)
+class Bars:
+    """A row of equal bars along a face, as drawings have it: 4 bars of 16 mm.
+
+    Parameters
+    ----------
+    number : int
+        Number of bars; of `side` bars those of each side.
+    diameter : float
+        Their diameter [m].
+    steel : Steel, optional
+        Their steel, if it is another one than that of the section.
+    clear : float, optional
+        Clear distance to the row before it, towards the face [m]; by default the diameter of the
+        thicker bars, 25 mm at least (ACI 318-19, 25.2.2). The first row lies on the ties.
+
+    Raises
+    ------
+    InputError
+        If a number is refused.
+
+    Examples
+    --------
+    >>> steel = Steel(450e6, 600e6)
+    >>> beam = RectangularSection(
+    ...     0.3,
+    ...     0.5,
+    ...     Concrete(25e6),
+    ...     top=[Bars(4, 0.016), Bars(2, 0.016)],
+    ...     bottom=Bars(3, 0.016),
+    ...     steel=steel,
+    ...     ties=Ties(0.008, 0.15, Steel(400e6)),
+    ...     cover=0.03,
+    ... )
+    >>> sorted({round(y, 3) for y, _, _ in beam.bars})
+    [-0.204, 0.163, 0.204]
+    """
+
+    number: int
+    diameter: float
+    steel: Steel | None = None
+    clear: float | None = None
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "Bars")
+        _arguments.within(self.number, "Bars: number", least=1, most=_MOST_BARS)
+        _check_positive(self, "Bars", diameter="m")
+        _check_bar(self, "Bars", "diameter")
+        if self.clear is not None:
+            _arguments.within(self.clear, "Bars: clear", least=0.0, most=1.0, unit="m")
+
+    def at(self, y: float, steel: Steel | None) -> list[Bar]:
+        """Return the bars at a distance from mid-depth [m], of a steel if they have none."""
+        return [(y, _area(self.diameter), self.steel or steel)] * self.number  # type: ignore[list-item]
+
+    def statement(self, face: str, numbers: Mapping[Steel, int]) -> _core.Statement:
+        """Return the keys of the row at a face, with the numbers of the steels."""
+        steel = None if self.steel is None else numbers[self.steel]
+        values = {"number": self.number, "diameter": self.diameter, "clear": self.clear}
+        return _core.group("row", {"face": face, **values, "steel": steel})
+
+
+def rows_of_bars(
+    rows: Sequence[Bars], face: float, inset: float, steel: Steel | None
+) -> tuple[list[Bar], list[float]]:
+    """Return the bars of rows from a face inwards, and where the rows lie [m].
+
+    Parameters
+    ----------
+    rows : sequence of Bars
+        The rows, the outer first.
+    face : float
+        Where the face is, from mid-depth [m].
+    inset : float
+        From the face to the outer edge of the bars: cover and tie [m].
+    steel : Steel
+        Of rows that have none of their own.
+    """
+    bars: list[Bar] = []
+    places: list[float] = []
+    depth, before = inset, 0.0
+    for row in rows:
+        if before:
+            usual = max(before, row.diameter, _LEAST_CLEAR)
+            depth += usual if row.clear is None else row.clear
+        places.append(face - math.copysign(depth + 0.5 * row.diameter, face))
+        bars += row.at(places[-1], steel)
+        depth, before = depth + row.diameter, row.diameter
+    return bars, places
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,16 @@ from rbsdem import _arguments, _core
 from rbsdem._arguments import Derived, given
 from rbsdem._types import Array, Self
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties
+from rbsdem.model.materials import (
+    Bar,
+    Bars,
+    Concrete,
+    Layout,
+    Spiral,
+    Steel,
+    Ties,
+    rows_of_bars,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +67,7 @@ class Confinement:
 
 
 class _LayoutBars(tuple[Bar, ...]):
-    """Bars that follow from a layout."""
+    """Bars that follow from a layout or from rows, one by one."""
 
     __slots__ = ()
 
@@ -129,9 +138,17 @@ class Section(_Fields, ABC):
             f"cover {1e3 * self.cover:.3g} mm"
         )
 
-    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+    @property
+    def rows(self) -> list[tuple[str, Bars]]:
+        """Rows of bars by their faces: "top", "bottom", "side"."""
+        return []
+
+    def _lay_out(self, inset: float) -> list[Bar]:
         """Return the bars of the layouts; `inset` is from the face to the edge of the bars [m]."""
-        bars, inner = layout.bars(self.solid, self.depth, inset), self.inner_layout
+        layout, inner = self.layout, self.inner_layout
+        if layout is None:
+            return []
+        bars = layout.bars(self.solid, self.depth, inset)
         if inner is None:
             return bars
         # The bars around the void are those along the inside of a larger outline.
@@ -225,19 +242,26 @@ class Section(_Fields, ABC):
         """Set the bars, from list or layout, and their diameter."""
         if not isinstance(self.bars, Sequence):
             raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
-        if self.layout is not None:
-            # Those of a section that this one was made from by `dataclasses.replace` are laid anew.
-            if len(self.bars) > 0 and not isinstance(self.bars, _LayoutBars):
-                raise InputError("section: give bars or layout, not both")
+        laid = {"layout": self.layout is not None, "rows (top, bottom, side)": bool(self.rows)}
+        # Those of a section that this one was made from by `dataclasses.replace` are laid anew.
+        laid["bars"] = len(self.bars) > 0 and not self.laid_out
+        ways = [name for name, there in laid.items() if there]
+        if len(ways) > 1:
+            raise InputError(f"section: give {' or '.join(reversed(ways))}, not both")
+        if self.layout is not None or self.rows:
             inset = cover + (transverse.diameter if transverse else 0.0)
-            self._set("bars", _LayoutBars(self._lay_out(self.layout, inset)))
-            follows: float | None = self.layout.diameter
+            self._set("bars", _LayoutBars(self._lay_out(inset)))
         else:
             self._set("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
-            areas = [area for _, area, _ in self.bars if area > 0.0]
-            diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
-            follows = np.average(diameters, weights=areas) if areas else None
-        self._set_default("bar_diameter", follows)
+        areas = [area for _, area, _ in self.bars if area > 0.0]
+        diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
+        mean = np.average(diameters, weights=areas) if areas else None
+        self._set_default("bar_diameter", mean if self.layout is None else self.layout.diameter)
+
+    @property
+    def laid_out(self) -> bool:
+        """Whether `bars` follow from a layout or from rows, so that each entry is one bar."""
+        return isinstance(self.bars, _LayoutBars)
 
     def drawing(self) -> _core.Statement:
         """Return the keys of the section as it was given, as groups of a case file."""
@@ -245,13 +269,18 @@ class Section(_Fields, ABC):
         laid_out = {name: layout for name, layout in layouts.items() if layout is not None}
         values = ((field.name, getattr(self, field.name)) for field in fields(self))
         sizes = {name: given(value) for name, value in values if isinstance(value, int | float)}
-        return self._stated(sizes | self._sizes(), () if laid_out else self.bars, laid_out)
+        return self._stated(sizes | self._sizes(), () if self.laid_out else self.bars, laid_out)
 
     def _stated(
         self, sizes: Mapping[str, Any], bars: Sequence[Bar], layouts: Mapping[str, Layout]
     ) -> _core.Statement:
         """Return the groups of sizes, concrete, steels, bars or layouts, and transverse bars."""
-        steels = [steel for layout in layouts.values() for steel in layout.steels]
+        rows = [] if bars else self.rows
+        # Rows without a steel of their own are of the first.
+        first: Steel | None = getattr(self, "steel", None)
+        steels = [first] if rows and first is not None else []
+        steels += [row.steel for _, row in rows if row.steel is not None]
+        steels += [steel for layout in layouts.values() for steel in layout.steels]
         steels += [steel for _, _, steel in bars]
         steels += [] if self.ties is None else [self.ties.steel]
         numbers = {steel: i for i, steel in enumerate(dict.fromkeys(steels), 1)}
@@ -259,8 +288,9 @@ class Section(_Fields, ABC):
         parts += [steel.statement(number) for steel, number in numbers.items()]
         if bars:
             y, area, each = zip(*bars, strict=True)
-            rows = {"y": y, "area": area, "steel": [numbers[steel] for steel in each]}
-            parts.append(_core.group("bars", rows))
+            places = {"y": y, "area": area, "steel": [numbers[steel] for steel in each]}
+            parts.append(_core.group("bars", places))
+        parts += [row.statement(face, numbers) for face, row in rows]
         parts += [layout.statement(name, numbers) for name, layout in layouts.items()]
         if self.ties is not None:
             parts.append(self.ties.statement(numbers[self.ties.steel]))
@@ -284,8 +314,14 @@ class Section(_Fields, ABC):
         if all(abs(a[0] - b[0]) <= slack and a[1:] == b[1:] for a, b in pairs):
             return replace(self, **turned) if turned else self
         diameter = float(self.bar_diameter or 0.0)
+        if self.rows:
+            return replace(self, **turned, **self._rows_turned())
         changes = turned | {"bars": mirrored, "bar_diameter": diameter}
         return replace(self, **changes | {"layout": None, "inner_layout": None})
+
+    def _rows_turned(self) -> dict[str, Any]:
+        """Return the rows of bars upside down."""
+        return {}
 
     @property
     def symmetric(self) -> bool:
@@ -328,6 +364,8 @@ class Section(_Fields, ABC):
     @property
     def single_bars(self) -> list[tuple[float, float]]:
         """The y and the diameter of every bar [m]; an entry of `bars` may be a row of several."""
+        if self.laid_out:
+            return [(y, 2.0 * math.sqrt(area / math.pi)) for y, area, _ in self.bars]
         bars = []
         for y, area, _ in self.bars:
             single = 0.25 * math.pi * (self.bar_diameter or 0.0) ** 2
@@ -373,7 +411,7 @@ class RectangularSection(Section):
         of bars may be one entry if `bar_diameter` is given. y > 0 is up in a beam and on the left
         in a column of a frame; a positive curvature pulls it.
     layout : Layout, optional
-        Bars by number and diameter, in place of `bars`.
+        Bars by number and diameter along the four faces, in place of `bars`.
     ties : Ties, optional
         Transverse bars; they carry shear, and confine the core in analyses with `confined=True`.
     cover : float, optional
@@ -393,6 +431,12 @@ class RectangularSection(Section):
         Thickness of the two webs, by default that of the walls [m].
     inner_layout : Layout, optional
         Bars around the void; they go with `layout`.
+    top, bottom : Bars or sequence of Bars, optional
+        Rows of bars at the faces y > 0 and y < 0, the outer row first, in place of `bars`.
+    side : Bars, optional
+        Bars of each side, at equal distances between the outer rows above and below.
+    steel : Steel, optional
+        Steel of the rows.
 
     Raises
     ------
@@ -431,10 +475,17 @@ class RectangularSection(Section):
     wall: float | None = None
     side_wall: float | None = None
     inner_layout: Layout | None = None
+    top: Bars | Sequence[Bars] = ()
+    bottom: Bars | Sequence[Bars] = ()
+    side: Bars | None = None
+    steel: Steel | None = None
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "section")
+        for face in ("top", "bottom"):
+            self._set(face, _rows(getattr(self, face), face))
         self._set_default("side_cover", self.cover)
+        self._check_rows()
         if self.wall is not None:
             self._set_default("side_wall", self.wall)
             self._check_wall("wall", self.depth, "depth", self.cover)
@@ -450,6 +501,63 @@ class RectangularSection(Section):
     @property
     def _web(self) -> float:
         return float(self.side_wall or 0.0)
+
+    @property
+    def rows(self) -> list[tuple[str, Bars]]:
+        """Rows of bars by their faces: "top", "bottom", "side"."""
+        several = [(face, row) for face in ("top", "bottom") for row in getattr(self, face)]
+        return several if self.side is None else [*several, ("side", self.side)]
+
+    def _rows_turned(self) -> dict[str, Any]:
+        return {"top": self.bottom, "bottom": self.top}
+
+    def _check_rows(self) -> None:
+        """Refuse rows without a steel, a steel without rows, and rows wider than the section."""
+        sizes = [row.steel is None for _, row in self.rows]
+        if any(sizes) and self.steel is None:
+            raise InputError("section: steel is missing; give that of the rows of bars")
+        if self.steel is not None and not any(sizes):
+            raise InputError(
+                "section: steel is that of rows of bars (top, bottom, side), and none needs it; "
+                "remove it"
+            )
+        tie = self.ties.diameter if self.ties else 0.0
+        for face, row in self.rows:
+            inside = self._width_at(face) - 2.0 * (float(self.side_cover or 0.0) + tie)
+            if face != "side" and not row.number * row.diameter <= inside + 1e-9:
+                raise InputError(
+                    f"section: {face}: {row.number} bars of {row.diameter:g} m do not fit into a "
+                    f"row of {inside:.4g} m; give several rows as a list"
+                )
+
+    def _width_at(self, face: str) -> float:
+        """Return the width in which the bars of a face lie [m]."""
+        del face
+        return self.width
+
+    def _lay_out(self, inset: float) -> list[Bar]:
+        if not self.rows:
+            return super()._lay_out(inset)
+        half, side = 0.5 * self.depth, self.side
+        top: Any = self.top
+        bottom: Any = self.bottom
+        above, high = rows_of_bars(top, half, inset, self.steel)
+        below, low = rows_of_bars(bottom, -half, inset, self.steel)
+        inner = high[-1] - 0.5 * top[-1].diameter if top else half
+        other = low[-1] + 0.5 * bottom[-1].diameter if bottom else -half
+        if inner < other:
+            raise InputError(
+                f"section: the rows of bars from the top reach down to y = {inner:.4g} m, and "
+                f"those from the bottom up to {other:.4g} m; they must not meet",
+                "section.top",
+            )
+        if side is None:
+            return above + below
+        edge = half - inset - 0.5 * side.diameter
+        ends = max(high, default=edge), min(low, default=-edge)
+        heights = np.linspace(*ends, side.number + 2)[1:-1].tolist()
+        bars = replace(side, number=2 * side.number).at(0.0, self.steel)
+        return above + [(heights[i // 2], *bar[1:]) for i, bar in enumerate(bars)] + below
 
     @property
     def web_width(self) -> float:
@@ -566,7 +674,8 @@ class TeeSection(RectangularSection):
 
     Parameters
     ----------
-    width, depth, concrete, bars, layout, ties, cover, side_cover, bar_diameter, strips
+    width, depth, concrete, bars, layout, ties, cover, side_cover, bar_diameter, strips, top, \
+    bottom, side, steel
         As for `RectangularSection`; the depth includes the flange.
     wall, side_wall, inner_layout
         Not for a tee.
@@ -630,6 +739,11 @@ class TeeSection(RectangularSection):
     def shape(self) -> str:
         """Name of the shape."""
         return "tee"
+
+    def _width_at(self, face: str) -> float:
+        """Return the width in which the bars of a face lie [m]: of the slab that of the flange."""
+        slab = "bottom" if self.flange_below else "top"
+        return self.flange_width if face == slab else self.width
 
     def _sizes(self) -> dict[str, float]:
         names = "flange_width", "flange_thickness", "flange_below"
@@ -823,6 +937,16 @@ def _by_height(bar: Bar) -> tuple[float, float, float]:
     """Return by what bars are ordered; heights that differ by round-off are one."""
     y, area, steel = bar
     return round(y, 9), area, steel.fy
+
+
+def _rows(given: Any, face: str) -> tuple[Bars, ...]:
+    """Return the rows of a face, of which there may be one alone."""
+    if given is None or isinstance(given, Bars):
+        return () if given is None else (given,)
+    rows = _arguments.several(given, f"section: {face}", "rows of Bars")
+    return tuple(
+        _arguments.instance(row, f"section: {face}", Bars, "as Bars(4, 0.016)") for row in rows
+    )
 
 
 def _bar(bar: Any, number: int) -> Bar:

@@ -10,7 +10,7 @@ from rbsdem import _core
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import SPRING_GROUPS, Column, Damping
 from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
-from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
+from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.section.building import Building, Frame
@@ -119,6 +119,15 @@ def _section(groups: Groups) -> Section:
         bars = _one(groups, "bars")
         rows = zip(bars["y"], bars["area"], bars["steel"], strict=True)
         parts["bars"] = [(y, area, steels[int(number)]) for y, area, number in rows]
+    for given in groups.get("row", []):
+        values = _core.typed("row", given)
+        face = values.pop("face", None)
+        if "steel" in values:
+            values["steel"] = steels[values["steel"]]
+        else:
+            parts["steel"] = next(iter(steels.values()), None)
+        row = Bars(**values)
+        parts[face] = row if face == "side" else (*parts.get(face, ()), row)
     for name, part in _PARTS.items():
         if name in groups:
             values = _one(groups, name)

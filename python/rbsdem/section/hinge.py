@@ -157,6 +157,8 @@ def _restrained(section: Section, legs: float) -> float:
     """
     if section.layout is not None:
         number: float = section.layout.number
+    elif section.laid_out:
+        number = len(section.bars)
     elif not section.bars:
         number = 0
     else:

@@ -22,7 +22,7 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Footing
-from rbsdem.model.materials import CONCRETE_DENSITY, Concrete, Layout, Spiral, Steel, Ties
+from rbsdem.model.materials import CONCRETE_DENSITY, Bars, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion, synthetic
@@ -328,32 +328,27 @@ def _beam_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     """Make the section of a beam: bars above and below, hoops, and a slab if it has a thickness."""
     sizes, bars, ties = (group(given, name) for name in ("section", "bars", "ties"))
     parts: dict[str, Any] = {}
-    rows: list[tuple[float, int, float, float]] = []
     before = len(faults.listed)
     with faults.of("concrete", "fc"):
         parts["concrete"] = Concrete(group(given, "concrete")["fc"])
     with faults.of("bars", "fy"):
-        steel = Steel(bars["fy"], bars["fu"])
+        parts["steel"] = Steel(bars["fy"], bars["fu"])
     with faults.of("ties", "diameter"):
         legs = {} if ties["legs"] is None else {"legs": ties["legs"]}
-        hoops = Ties(ties["diameter"], ties["spacing"], Steel(ties["fy"], ties["fu"]), **legs)
-        parts["ties"] = hoops
+        hoop = Steel(ties["fy"], ties["fu"])
+        parts["ties"] = Ties(ties["diameter"], ties["spacing"], hoop, **legs)
     with faults.of("section", "cover"):
         for name, least in (("width", 0.0), ("depth", 0.0), ("cover", -1.0)):
             parts[name] = _arguments.number(sizes[name], name, above=least, unit="m")
-    for side, name in ((1.0, "top"), (-1.0, "bottom")):
+    for name in ("top", "bottom"):
         with faults.of(name, "number"):
             row = group(given, name)
             number = _arguments.integer(row["number"], "number", least=1, most=_MOST_BARS)
             size = _arguments.number(row["diameter"], "diameter", above=0.0, unit="m")
-            rows.append((side, number, size, math.pi * size**2 / 4.0))
+            parts[name] = Bars(number, size)
     if len(faults.listed) > before:
         return None
     with faults.of("section", "cover"):
-        inside = 0.5 * parts["depth"] - parts["cover"] - hoops.diameter
-        each = [((side * (inside - 0.5 * d), area, steel), n) for side, n, d, area in rows]
-        parts["bars"] = [bar for bar, number in each for _ in range(number)]
-        parts["bar_diameter"] = max(size for _, _, size, _ in rows)
         if sizes["slab"] is None:
             return RectangularSection(**parts)
         flange = {"flange_width": sizes["flange"], "flange_thickness": sizes["slab"]}
