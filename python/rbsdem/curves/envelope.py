@@ -201,7 +201,8 @@ Method = Literal["asce_41", "ec_8", "park", "equal_energy"]
 IDEALISATIONS: tuple[Method, ...] = get_args(Method)
 """Names of the definitions."""
 
-_SOURCES: dict[str, str] = {
+#: Where each definition comes from.
+SOURCES: dict[str, str] = {
     "asce_41": "ASCE 41-17, 7.4.3.2.4",
     "ec_8": "EN 1998-1:2004, B.3",
     "park": "Park 1988, 0.75 of the peak force",
@@ -429,7 +430,7 @@ def _idealise(x: Array, y: Array, method: str, end: float | None = None) -> Idea
     at, force, end_at, end_force = (float(value) for value in points)
     if not at > 0:
         raise InputError("the envelope has its force at zero displacement; it has no first line")
-    source = _SOURCES[method]
+    source = SOURCES[method]
     return Idealisation(method, source, at, force, end_at, end_force, ultimate, lost)
 
 

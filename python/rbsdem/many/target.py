@@ -19,14 +19,14 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
 from rbsdem.checks.acceptance import between, rows_at
-from rbsdem.curves.envelope import Envelope, Idealisation, envelope
+from rbsdem.curves.envelope import SOURCES, Envelope, Idealisation, envelope
 from rbsdem.errors import InputError
 from rbsdem.many.ensemble import ensemble
 from rbsdem.model.frame import Frame
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.motions.design import DesignSpectrum, damping_factor
 from rbsdem.motions.motion import GroundMotion, checked_motion
-from rbsdem.run.analysis import modes
+from rbsdem.run.analysis import matrices, modes
 from rbsdem.run.solver import Solver
 
 TargetMethod = Literal["asce_41", "en_1998", "capacity_spectrum"]
@@ -59,7 +59,8 @@ class Target(Tabular):
     period : float
         Effective period of the method [s]: T_e, T* or T_eff.
     ductility : float
-        mu_strength of ASCE 41, else displacement over that at yield.
+        mu_strength of ASCE 41, else displacement over that at yield; on the first line of the curve
+        displacement over that at its end, below 1.
     factors : dict of str to float
         The coefficients of the method by name.
     warnings : tuple of str
@@ -359,7 +360,38 @@ def capacity(push: FrameResult) -> Capacity:
     storeys = len(frame.storey_heights)
     slope = _pdelta_slope(frame, first.x[:, 0] / phi, gamma)
     masses, period = (gamma, modal_mass, frame.parts.mass), float(first.period[0])
-    return Capacity(u, v, *masses, max(storeys, 1), period, pdelta_slope=slope)
+    stiffness = _elastic_slope(frame, first.x[:, 0])
+    return Capacity(u, v, *masses, max(storeys, 1), period, stiffness, pdelta_slope=slope)
+
+
+def _elastic_slope(frame: Frame, shape: Array) -> float:
+    """Return the slope of a push-over of the frame before anything yields or cracks [N/m].
+
+    The period of the modes belongs to it. The slope of the curve may be less: its members may have
+    cracked under the dead load.
+    """
+    made, parts = matrices(frame), frame.parts
+    along = [i for i, name in enumerate(made.unknowns) if name.startswith("x_")]
+    node = [parts.nodes.index(made.unknowns[i][2:]) for i in along]
+
+    def moved_by(name: str) -> int:
+        """Return the unknown of a node along x; those that are tied share one."""
+        if f"x_{name}" in made.unknowns:
+            return made.unknowns.index(f"x_{name}")
+        return along[int(np.abs(shape[node] - shape[parts.nodes.index(name)]).argmin())]
+
+    load = np.zeros(len(made.unknowns))
+    if frame.pattern == "nodes":
+        for each in frame.nodes:
+            load[moved_by(each.name)] += each.push_x
+            if each.push_y:
+                load[made.unknowns.index(f"y_{each.name}")] += each.push_y
+    else:
+        shares = {"triangular": parts.y - parts.y.min(), "modal": shape}
+        load[along] = made.mass[along, along] * shares.get(frame.pattern, np.ones(len(shape)))[node]
+    moved = np.linalg.solve(made.stiffness + made.geometric, load)
+    control = frame.control_node or parts.nodes[int(parts.y.argmax())]
+    return float(load[along].sum() / moved[moved_by(control)])
 
 
 def _pdelta_slope(frame: Frame, shape: Array, gamma: float) -> float:
@@ -378,10 +410,12 @@ def _pdelta_slope(frame: Frame, shape: Array, gamma: float) -> float:
 #: Coefficient a of C_1 by the class of the site (ASCE 41-17, 7.4.1.3.1).
 SITES = {"A": 130.0, "B": 130.0, "C": 90.0, "D": 60.0, "E": 60.0, "F": 60.0}
 
-#: Share of the tolerance of displacements to which methods iterate, and their most passes.
+#: Share of displacements to which methods iterate, and their most passes.
 _CLOSE, _PASSES = 1e-10, 400
 #: Steps over a curve among which the last point of performance is looked for.
 _STEPS = 150
+#: Share of its force by which a curve is off its first line where that ends.
+_STRAIGHT = 1e-3
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -401,8 +435,8 @@ class Capacity(Tabular):
     storeys : int
         Number of storeys.
     period, stiffness : float
-        Elastic period of the first mode [s], and the slope of the curve that belongs to it [N/m].
-        Either follows from the other and m*; without both the slope is that of the first line.
+        Elastic period of the first mode [s], and the elastic slope of the curve [N/m]. Without them
+        the slope is that of the first line of the curve, the period that of m* on it.
     pdelta_slope : float
         Slope that P-Delta alone takes from the curve [N/m].
     """
@@ -421,18 +455,17 @@ class Capacity(Tabular):
 
     def __post_init__(self) -> None:
         curve = envelope((self.displacement, self.force))
-        object.__setattr__(self, "displacement", curve.displacement)
-        object.__setattr__(self, "force", curve.force)
+        # Where nothing is left of the strength the curve has ended.
+        top = int(curve.force.argmax())
+        gone = np.flatnonzero(curve.force[top:] <= 0)
+        last = top + int(gone[0]) if gone.size else curve.force.size
+        object.__setattr__(self, "displacement", curve.displacement[:last])
+        object.__setattr__(self, "force", curve.force[:last])
         for name in ("gamma", "modal_mass", "total_mass"):
             value = _arguments.number(getattr(self, name), f"Capacity: {name}", above=0.0)
             object.__setattr__(self, name, value)
         if math.isnan(self.stiffness):
-            # Rows at the start of a path may differ by round-off alone.
-            first = int(np.flatnonzero(curve.displacement > 1e-6 * curve.largest_displacement)[0])
-            slope = float(curve.force[first] / curve.displacement[first])
-            if not math.isnan(self.period):
-                slope = self.modal_mass * (2.0 * math.pi / self.period) ** 2
-            object.__setattr__(self, "stiffness", slope)
+            object.__setattr__(self, "stiffness", self.slope)
         if math.isnan(self.period):
             slow = 2.0 * math.pi * math.sqrt(self.modal_mass / self.stiffness)
             object.__setattr__(self, "period", slow)
@@ -467,9 +500,30 @@ class Capacity(Tabular):
         return cls(*curve, gamma, modal, float(m.sum()), m.size, **more)
 
     def idealise(self, method: str, end: float) -> Idealisation:
-        """Return the two straight lines of the curve up to an end [m]."""
+        """Return the two straight lines of the curve up to an end [m].
+
+        Up to the end of its first line the curve is that line, and yields at the end of it: any
+        yield point on it would have equal areas.
+        """
         curve = Envelope(1, self.displacement, self.force)
-        return curve.idealise(method, end=min(end, self.largest))  # type: ignore[arg-type]
+        if end > self.elastic * (1.0 + 1e-12):
+            return curve.idealise(method, end=min(end, self.largest))  # type: ignore[arg-type]
+        first, whole = (self.elastic, self.slope * self.elastic), curve.idealise("park")
+        left = whole.ultimate_displacement, whole.lost
+        return Idealisation(method, SOURCES[method], *first, *first, *left)
+
+    @cached_property
+    def slope(self) -> float:
+        """Slope of the first line of the curve, its largest secant [N/m]."""
+        # Rows at the start of a path may differ by round-off alone.
+        there = self.displacement > 1e-6 * self.largest
+        return float((self.force[there] / self.displacement[there]).max())
+
+    @cached_property
+    def elastic(self) -> float:
+        """Displacement of the last point on that line [m]."""
+        near = self.force >= (1.0 - _STRAIGHT) * self.slope * self.displacement
+        return float(self.displacement[np.flatnonzero(near)[-1]])
 
     @property
     def largest(self) -> float:
@@ -528,19 +582,22 @@ def asce_41(
 
     def demand(end: float) -> tuple[float, Idealisation, float, float]:
         lines = curve.idealise("asce_41", end)
+        elastic = end <= curve.elastic
         period = curve.period * math.sqrt(curve.stiffness / lines.stiffness)
         sa = spectrum.sa(period)
         usual = 1.0 if curve.storeys <= 2 or period > 1.0 else 0.9
         found["C_m"] = usual if cm is None else _arguments.number(cm, "target: cm", above=0.0)
         strength = sa * found["C_m"] * curve.total_mass / lines.yield_force
-        more = max(strength - 1.0, 0.0)
+        more = 0.0 if elastic else max(strength - 1.0, 0.0)
         found["C_1"] = 1.0 if period > 1.0 else 1.0 + more / (a * max(period, 0.2) ** 2)
         found["C_2"] = 1.0 if period > 0.7 else 1.0 + (more / period) ** 2 / 800.0
-        sd = sa * (period / (2.0 * math.pi)) ** 2
-        return first * found["C_1"] * found["C_2"] * sd, lines, period, strength
+        reached = first * found["C_1"] * found["C_2"] * spectrum.sd(period)
+        if elastic:
+            strength = reached / curve.elastic
+        return reached, lines, period, strength
 
-    end = _settled(lambda u: demand(u)[0], curve.peak)
-    target, lines, period, strength = demand(end)
+    target, end = _meeting(curve, lambda u: demand(u)[0], curve.peak)
+    _, lines, period, strength = demand(end)
     limit, softening = _most_strength(curve, lines, spectrum, near_field, period)
     warnings = []
     if strength > limit:
@@ -553,17 +610,50 @@ def asce_41(
     return Target(*named, target, lines, period, strength, factors | softening, tuple(warnings))
 
 
-def _settled(demand: Callable[[float], float], most: float) -> float:
-    """Return the end at which a demand meets itself, or the most; by bisection."""
-    if demand(most) >= most:
-        return most
-    low, high = 0.0, most
+def _meeting(
+    curve: Capacity, demand: Callable[[float], float], most: float, *, furthest: bool = False
+) -> tuple[float, float]:
+    """Return the displacement that a demand up to itself asks for, and the end of its lines.
+
+    On the first line of the curve it is the elastic one. Beyond, the demand up to each end grows
+    with the spectrum, so the ends at which it lies beyond them become more: the last of them in a
+    fixed order of trials never comes back as the spectrum grows. An end up to which the curve has
+    no such lines asks for the elastic displacement.
+
+    Parameters
+    ----------
+    demand : callable
+        The displacement that lines up to an end ask for [m].
+    most : float
+        Largest end of lines [m].
+    furthest : bool, optional
+        Whether the furthest of several meetings is looked for.
+    """
+    elastic = demand(curve.elastic)
+    if elastic <= curve.elastic or most <= curve.elastic:
+        return elastic, min(elastic, curve.elastic)
+
+    def asked(end: float) -> tuple[float, float]:
+        try:
+            return demand(end), end
+        except InputError:
+            return elastic, curve.elastic
+
+    reached, lines_to = asked(most)
+    if reached >= most:
+        return reached, lines_to
+    low, high = curve.elastic, most
+    if furthest:
+        ends = np.linspace(low, most, _STEPS + 1).tolist()
+        last = max(i for i, end in enumerate(ends) if not i or asked(end)[0] > end)
+        low, high = ends[last : last + 2]
     for _ in range(_PASSES):
         middle = 0.5 * (low + high)
         if high - low <= _CLOSE * high:
             break
-        low, high = (middle, high) if demand(middle) > middle else (low, middle)
-    return high
+        low, high = (middle, high) if asked(middle)[0] > middle else (low, middle)
+    # Lines that change at once may ask for more before it and for less behind it.
+    return high, asked(high)[1]
 
 
 def _most_strength(
@@ -583,7 +673,8 @@ def _most_strength(
         last = float(u[i - 1] + share * (u[i] - u[i - 1])), 0.6 * lines.yield_force
     if not last[1] < v[0] * (1.0 - 1e-9):
         return math.inf, {}
-    falling = (last[1] - float(v[0])) / (last[0] - float(u[0])) / lines.stiffness
+    fall, way = last[1] - float(v[0]), last[0] - float(u[0])
+    falling = fall / way / lines.stiffness if way > 0 else -math.inf
     leaning = -curve.pdelta_slope / lines.stiffness
     near = spectrum.sa(1.0) >= 0.6 * STANDARD_GRAVITY * (1 - 1e-9)
     near = near if near_field is None else _arguments.boolean(near_field, "target: near_field")
@@ -622,10 +713,11 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         found.update({"T*": period, "q_u": strength, "d_et*": elastic, "d_t*": reached})
         return curve.gamma * reached
 
-    target = demand(most)
-    # The lines need a part that has yielded: from the first line on they are those of the curve.
-    end = _settled(demand, most) if _arguments.boolean(iterate, "target: iterate") else most
-    target = demand(end)
+    if _arguments.boolean(iterate, "target: iterate"):
+        target, end = _meeting(curve, demand, most)
+    else:
+        target, end = demand(most), most
+    demand(end)
     lines = curve.idealise("ec_8", end)
     factors = {"Gamma": curve.gamma, "m*": curve.modal_mass, **found, "T_C": spectrum.corner}
     named = "en_1998", "EN 1998-1:2004, annex B", curve, spectrum
@@ -675,22 +767,8 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
         found.update({"T_0": slow, "T_eff": period, "beta_eff": damping, "B": factor})
         return curve.gamma * spectrum.sd(period) / factor
 
-    trials = np.linspace(0.0, curve.largest, _STEPS + 1).tolist()
-
-    def tried(end: float) -> float:
-        # Behind its peak a curve may have no such lines.
-        try:
-            return demand(end)
-        except InputError:
-            return math.nan
-
-    above = [i for i, u in enumerate(trials) if not i or tried(u) > u]
-    low, missing = trials[above[-1]], above[-1] == _STEPS
-    end = curve.largest
-    if not missing:
-        step = trials[above[-1] + 1] - low
-        end = low + _settled(lambda u: tried(low + u) - low, step)
-    target = demand(end)
+    target, end = _meeting(curve, demand, curve.largest, furthest=True)
+    demand(end)
     lines = curve.idealise("asce_41", end)
     secant = curve.force_at(end) / end
     found["T_sec"] = 2.0 * math.pi * math.sqrt(curve.modal_mass / secant)
@@ -699,5 +777,5 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
         warnings.append(f"T_0 = {found['T_0']:.3g} s is outside the fit of FEMA 440, 0.2 to 2 s.")
     named = "capacity_spectrum", "FEMA 440, chapter 6", curve, spectrum
     factors = {"Gamma": curve.gamma, **found, "alpha": lines.post_yield_ratio}
-    ductility = end / lines.yield_displacement
+    ductility = target / lines.yield_displacement
     return Target(*named, target, lines, found["T_eff"], ductility, factors, tuple(warnings))
