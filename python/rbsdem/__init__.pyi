@@ -30,6 +30,10 @@ from rbsdem.model.materials import Steel as Steel
 from rbsdem.model.materials import Ties as Ties
 from rbsdem.model.shape import CircularSection as CircularSection
 from rbsdem.model.shape import RectangularSection as RectangularSection
+from rbsdem.model.wall import Boundary as Boundary
+from rbsdem.model.wall import Curtain as Curtain
+from rbsdem.model.wall import Hoops as Hoops
+from rbsdem.model.wall import WallSection as WallSection
 from rbsdem.motions.motion import GroundMotion as GroundMotion
 from rbsdem.run.analysis import matrices as matrices
 from rbsdem.run.analysis import modes as modes

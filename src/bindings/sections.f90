@@ -8,11 +8,13 @@ module rbs_bindings_sections
    use rbs_case_group_reader, only: group_reader
    use rbs_section_balance, only: axial_capacity, follow
    use rbs_section_concrete_law, only: concrete_stress, concrete_type, tension_place
-   use rbs_section_cross_section, only: section_type, cut_strips, strip_centroids, strips_type
+   use rbs_section_confinement, only: confinement_form, confinement_of, confinement_type, form_of_hinge, &
+                                      form_of_wall, hooped_core, no_ties
+   use rbs_section_cross_section, only: enclose_core, hooped_core_of, section_type, strip_centroids
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
-   use rbs_section_section_build, only: make_section, outline_core, figures_of_section, values_of_point, &
+   use rbs_section_section_build, only: make_section, figures_of_section, values_of_point, &
                                         values_of_shear_point
    use rbs_section_section_record, only: section_record
    use rbs_section_shape, only: shape_type
@@ -51,14 +53,13 @@ contains
             answer%value = steel_stress(drawn%steels(1)%law(), request%array('strain'))
          end if
          return
-      case ('section_strips')
-         call cut_section(request%wants('round_core'), request%whole('number'))
-         return
       case default                                  ! asks for the section, which is made next
       end select
       call make_section(drawn, section, answer%error)
       if (allocated(answer%error)) return
       select case (request%what)
+      case ('section_strips')
+         call cut_section(request%wants('round_core'), request%whole('number'), request%array('held'))
       case ('check_section')
          answer%value = figures_of_section(section)
       case ('section_flexure')
@@ -161,20 +162,32 @@ contains
          answer%value = concrete_stress(law, strain)
       end subroutine respond_concrete
 
-      !> Strips: y of the centroid and area of the core, then of the cover.
-      subroutine cut_section(round_core, number)
+      !> Strips: y of the centroid and area of the core, then of the cover. Values: the confining stress [Pa]
+      !> at y < 0 and y > 0, then the volume of the hoops over that of the core times their yield stress [Pa].
+      subroutine cut_section(round_core, number, held)
          logical, intent(in) :: round_core
          integer, intent(in) :: number
-         type(shape_type), allocatable :: inside
-         type(strips_type) :: strips
+         !> Bars that legs hold
+         real(c_double), intent(in) :: held(:)
+         type(confinement_form) :: form
+         type(confinement_type) :: found(2)
+         type(hooped_core) :: core
+         integer :: side
 
-         call outline_core(drawn, round_core, inside)
-         call cut_strips(drawn%shape, inside, number, strips)
-         allocate (answer%rows(4, number))
-         call strip_centroids(drawn%shape, inside, strips, answer%rows(1, :), &
-                              answer%rows(3, :))
-         answer%rows(2, :) = strips%core_area
-         answer%rows(4, :) = strips%area - strips%core_area
+         call enclose_core(section, round_core)
+         ! What no hoop confines is no core.
+         if (section%transverse%kind == no_ties .and. .not. section%shape%walled) section%core_shape = shape_type()
+         answer%rows = strip_centroids(section, number)
+         form = form_of_hinge
+         if (section%shape%walled) form = form_of_wall
+         form%held = held(1)
+         allocate (answer%value(4), source=0.0_c_double)
+         do side = 1, 2
+            core = hooped_core_of(section, side)
+            found(side) = confinement_of(core, form)
+            answer%value(side) = found(side)%stress
+            answer%value(2 + side) = found(side)%ratio*core%hoops%steel%fy
+         end do
       end subroutine cut_section
 
       !> The rules of the named points must apply to the section.

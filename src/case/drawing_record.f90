@@ -9,8 +9,8 @@ module rbs_case_drawing_record
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column_record, only: most_bodies
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_section_cross_section, only: no_ties, spiral, ties
-   use rbs_section_section_record, only: append_steel, find_steel, section_record
+   use rbs_section_confinement, only: no_ties, spiral, ties
+   use rbs_section_section_record, only: append_steel, boundary_record, find_steel, section_record
    use rbs_section_shape, only: bar_size
    implicit none
    private
@@ -18,9 +18,9 @@ module rbs_case_drawing_record
    public :: drawing_record
 
    !> The groups of a drawing.
-   character(len=12), parameter, public :: drawing_groups(11) = [character(len=12) :: &
+   character(len=12), parameter, public :: drawing_groups(13) = [character(len=12) :: &
       'drawing', 'section', 'concrete', 'steel', 'bars', 'row', 'layout', 'inner_layout', 'ties', 'spiral', &
-      'parameter']
+      'boundary', 'curtain', 'parameter']
 
    !> Bars by number and diameter, on the faces of a rectangle or around a circle.
    type, extends(visited_record) :: layout_record
@@ -43,6 +43,14 @@ module rbs_case_drawing_record
    contains
       procedure :: visit => visit_row
    end type row_record
+   !> Bars of the web of a wall, as a mesh.
+   type, extends(visited_record) :: curtain_record
+      character(len=10) :: direction = 'vertical'
+      real(wp) :: diameter = unset, spacing = unset
+      integer :: faces = 2, steel = unset_integer
+   contains
+      procedure :: visit => visit_curtain
+   end type curtain_record
 
    !> A parameter of the model that is not that of its version.
    type, extends(visited_record) :: parameter_record
@@ -68,6 +76,8 @@ module rbs_case_drawing_record
       integer :: restrained = unset_integer
       logical :: round_core = .false.
       type(parameter_record), allocatable :: parameters(:)
+      !> Of a wall: vertical bars of the web, and horizontal ones
+      type(curtain_record), allocatable :: curtains(:)
       !> Whether the group itself was given, and how many groups of hoops were
       logical :: stated = .false.
       integer :: hoops = 0
@@ -88,6 +98,8 @@ contains
 
       if (.not. allocated(self%section%steels)) allocate (self%section%steels(0))
       if (.not. allocated(self%parameters)) allocate (self%parameters(0), self%rows(0))
+      if (.not. allocated(self%curtains)) allocate (self%curtains(0))
+      if (.not. allocated(self%section%boundaries)) allocate (self%section%boundaries(0))
       if (group == 'ties' .or. group == 'spiral') self%hoops = self%hoops + 1
       select case (group)
       case ('drawing')
@@ -106,6 +118,10 @@ contains
          self%section%hoops%kind = spiral
       case ('parameter')
          self%parameters = [self%parameters, parameter_record()]
+      case ('boundary')
+         self%section%boundaries = [self%section%boundaries, boundary_record()]
+      case ('curtain')
+         self%curtains = [self%curtains, curtain_record()]
       case default                                  ! always there
       end select
    end subroutine open_group
@@ -119,6 +135,8 @@ contains
       if (group == 'steel') number = size(self%section%steels)
       if (group == 'parameter') number = size(self%parameters)
       if (group == 'row') number = size(self%rows)
+      if (group == 'boundary') number = size(self%section%boundaries)
+      if (group == 'curtain') number = size(self%curtains)
       if (group == 'layout') number = merge(1, 0, allocated(self%layout))
       if (group == 'inner_layout') number = merge(1, 0, allocated(self%inner_layout))
       if (group == 'ties') number = merge(1, 0, self%section%hoops%kind == ties)
@@ -155,6 +173,10 @@ contains
          call self%section%hoops%visit(v)
       case ('parameter')
          call self%parameters(i)%visit(v)
+      case ('boundary')
+         call self%section%boundaries(i)%visit(v)
+      case ('curtain')
+         call self%curtains(i)%visit(v)
       case default
          call self%visit(v)
       end select
@@ -206,6 +228,16 @@ contains
       call v%key('steel', self%steel, '', any_number, 'number of their steel; without it the first', &
                  optional=.true.)
    end subroutine visit_row
+   subroutine visit_curtain(self, v)
+      class(curtain_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('direction', self%direction, 'bars of the web of a wall', 'vertical horizontal')
+      call v%key('diameter', self%diameter, 'm', bar_size, 'diameter of its bars')
+      call v%key('spacing', self%spacing, 'm', above_zero, 'distance between them')
+      call v%key('faces', self%faces, '', one_or_more, 'layers of bars over the thickness')
+      call v%key('steel', self%steel, '', any_number, 'number of their steel')
+   end subroutine visit_curtain
 
    subroutine visit_parameter(self, v)
       class(parameter_record), intent(inout) :: self
@@ -253,6 +285,13 @@ contains
          end if
       end do
       if (self%hoops > 1) call messages%add('ties: there is a spiral too; give one of them')
+      do i = 1, size(self%curtains)
+         call self%curtains(i)%check('curtain', messages)
+         if (self%section%shape_name /= 'wall') call messages%add("curtain: it is for shape = 'wall'; remove it")
+         if (find_steel(self%section, self%curtains(i)%steel) == 0) then
+            call messages%add('curtain: steel is not one of the steels of the section')
+         end if
+      end do
       do i = 1, size(self%parameters)
          call self%parameters(i)%check('parameter', messages)
          if (self%parameters(i)%name == '') call messages%add('parameter: name is missing; give it')

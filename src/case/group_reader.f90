@@ -28,12 +28,12 @@ module rbs_case_group_reader
       'analysis', 'output']
 
    !> The groups that Python gives of a section: the drawing, and last the three kinds of requests.
-   character(len=16), parameter, public :: section_groups(9) = [character(len=16) :: &
-      'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'diagram', 'springs', 'shear']
+   character(len=16), parameter, public :: section_groups(10) = [character(len=16) :: &
+      'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'boundary', 'diagram', 'springs', 'shear']
 
    !> Groups that may appear several times.
    character(len=16), parameter :: repeated(*) = [character(len=16) :: &
-      spring_groups, frame_groups(2:), 'steel', 'row', 'parameter', 'loading']
+      spring_groups, frame_groups(2:), 'steel', 'row', 'boundary', 'curtain', 'parameter', 'loading']
 
    !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1

@@ -9,16 +9,16 @@
 !> The integration of stresses uses the middles of the strips, the layers of a hinge use the centroids of
 !> core and cover in each strip.
 module rbs_section_cross_section
-   use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: concrete_type
+   use rbs_section_confinement, only: circular_hoops, confinement_type, hooped_core, no_ties, spiral, &
+                                      transverse_type
    use rbs_section_shape, only: new_core, shape_type
    use rbs_section_steel_law, only: steel_type
    implicit none
    private
 
-   public :: section_type, transverse_type, enclose_core, hoop_area, strips_type, &
-             cut_strips, strip_centroids
+   public :: section_type, enclose_core, hooped_core_of, strips_type, cut_strips, strip_centroids, side_of
 
    type :: strips_type
       !> Height of a strip [m]
@@ -28,21 +28,6 @@ module rbs_section_cross_section
       real(wp), allocatable :: y(:), area(:), core_area(:)
    end type strips_type
 
-   !> Kinds of transverse reinforcement.
-   integer, parameter, public :: no_ties = 0, ties = 1, spiral = 2, circular_hoops = 3
-
-   !> Transverse reinforcement.
-   type :: transverse_type
-      !> One of the kinds above
-      integer :: kind = no_ties
-      !> Diameter of the bar [m], distance between hoops or pitch along the column [m]
-      real(wp) :: diameter = 0.0_wp, spacing = 0.0_wp
-      !> Bars that cross the section parallel to the depth and across it: two of a round hoop; a diagonal
-      !> tie counts in part
-      real(wp) :: legs = 2.0_wp, legs_across = 2.0_wp
-      type(steel_type) :: steel
-   end type transverse_type
-
    type :: section_type
       !> Outline of the concrete, and of the core between the centre lines of the hoops
       type(shape_type), allocatable :: shape, core_shape
@@ -51,10 +36,12 @@ module rbs_section_cross_section
       !> Diameter of the main bars, for hinge length and confinement [m]
       real(wp) :: bar_diameter = 0.0_wp
       type(transverse_type) :: transverse
-      !> Laws without confinement, inside the hoops and outside them with confinement
-      type(concrete_type) :: plain, core, shell
-      !> Effective lateral stress of the hoops [Pa] and the coefficient k_e in it
-      real(wp) :: lateral_stress = 0.0_wp, effectiveness = 0.0_wp
+      !> Hoops of the boundary elements of a wall, at y < 0 and y > 0
+      type(transverse_type) :: boundary(2)
+      !> Laws without confinement, inside the hoops at y < 0 and y > 0, and outside them with confinement
+      type(concrete_type) :: plain, core(2), shell
+      !> By the hoops at y < 0 and y > 0
+      type(confinement_type) :: confinement(2)
       type(strips_type) :: strips
       !> Bars: distance from mid-depth [m], area [m2], place of the steel in `steels`, inside the hoops
       real(wp), allocatable :: bar_y(:), bar_area(:)
@@ -65,23 +52,67 @@ module rbs_section_cross_section
 
 contains
 
-   !> Find the outline of the core from cover and hoops.
-   subroutine enclose_core(section)
-      type(section_type), intent(inout) :: section
+   !> Which of two boundaries is nearer to a place.
+   elemental integer function side_of(y) result(side)
+      !> Distance from mid-depth [m]
+      real(wp), intent(in) :: y
 
-      associate (t => section%transverse)
-         call new_core(section%shape, any(t%kind == [spiral, circular_hoops]), &
-                       2.0_wp*section%side_cover + t%diameter, 2.0_wp*section%cover + t%diameter, &
-                       section%core_shape)
+      side = merge(2, 1, y > 0.0_wp)
+   end function side_of
+
+   !> Find the outline of the core from cover and hoops.
+   subroutine enclose_core(section, round)
+      type(section_type), intent(inout) :: section
+      !> Whether the hoops are taken as round although they are given as ties
+      logical, intent(in), optional :: round
+      logical :: as_round
+      integer :: side
+      real(wp) :: less
+
+      as_round = any(section%transverse%kind == [spiral, circular_hoops])
+      if (present(round)) as_round = as_round .or. round
+      associate (t => section%transverse, outline => section%shape)
+         if (.not. outline%walled) then
+            call new_core(outline, as_round, 2.0_wp*section%side_cover + t%diameter, &
+                          2.0_wp*section%cover + t%diameter, section%core_shape)
+            return
+         end if
+         section%core_shape = shape_type(0.0_wp, outline%depth, walled=.true.)
+         do side = 1, 2
+            if (section%boundary(side)%kind == no_ties) cycle
+            less = 2.0_wp*section%cover + section%boundary(side)%diameter
+            associate (core => section%core_shape)
+               core%end_width(side) = outline%end_width(side) - less
+               core%end_length(side) = outline%end_length(side) - less + section%cover
+               core%end_inset(side) = 0.5_wp*less
+            end associate
+         end do
       end associate
    end subroutine enclose_core
 
-   !> Area of one transverse bar [m2].
-   elemental real(wp) function hoop_area(transverse)
-      type(transverse_type), intent(in) :: transverse
+   !> What the hoops at y < 0 or y > 0 confine.
+   pure type(hooped_core) function hooped_core_of(section, side) result(core)
+      type(section_type), intent(in) :: section
+      integer, intent(in) :: side
 
-      hoop_area = 0.25_wp*pi*transverse%diameter**2
-   end function hoop_area
+      core%hoops = section%transverse
+      core%width = section%core_shape%width
+      core%depth = section%core_shape%depth
+      core%bar_diameter = section%bar_diameter
+      core%bar_area = sum(section%bar_area)
+      core%hollow = section%shape%hollow
+      if (section%core_shape%round .and. core%hoops%kind /= no_ties) then
+         ! Ties that stand for a spiral have its two legs.
+         if (core%hoops%kind /= circular_hoops) core%hoops%kind = spiral
+         core%hoops%legs = 2.0_wp
+         core%hoops%legs_across = 2.0_wp
+      end if
+      if (.not. section%shape%walled) return
+      core%hoops = section%boundary(side)
+      core%width = section%core_shape%end_width(side)
+      core%depth = section%core_shape%end_length(side)
+      core%bar_area = sum(section%bar_area, section%bar_in_core .and. side_of(section%bar_y) == side)
+   end function hooped_core_of
 
    !> Cut into `count` strips of equal height.
    pure subroutine cut_strips(outline, core, count, strips)
@@ -98,22 +129,57 @@ contains
       strips%core_area = min(core%area_between(low, high), strips%area)
    end subroutine cut_strips
 
-   !> Centroids of core and cover in each strip [m]; the middle of a strip that has no core, or no cover.
-   pure subroutine strip_centroids(outline, core, strips, core_y, cover_y)
-      type(shape_type), intent(in) :: outline, core
-      type(strips_type), intent(in) :: strips
-      real(wp), intent(out) :: core_y(:), cover_y(:)
-      real(wp), dimension(size(core_y)) :: low, high, middle, moment, core_moment, cover_area
+   !> Strips of a hinge: centroid [m] and area [m2] of the core, then of the cover, a row of four for each.
+   !> Edges of boundaries of a wall that have hoops or wings are edges of strips. Without a core, or a cover, the centroid is the
+   !> middle of the strip.
+   pure function strip_centroids(section, count) result(rows)
+      type(section_type), intent(in) :: section
+      !> Number of strips of equal height, before those edges cut them
+      integer, intent(in) :: count
+      real(wp), allocatable :: rows(:, :)
+      real(wp), allocatable, dimension(:) :: low, high, middle, area, core, moment, core_moment
+      integer :: side
 
-      call find_edges(outline, size(core_y), low, high, middle)
-      core_y = middle
-      cover_y = middle
-      moment = outline%moment_between(low, high)
-      core_moment = core%moment_between(low, high)
-      cover_area = strips%area - strips%core_area
-      where (strips%core_area > 0.0_wp) core_y = core_moment/strips%core_area
-      where (cover_area > 0.0_wp) cover_y = (moment - core_moment)/cover_area
-   end subroutine strip_centroids
+      allocate (low(count), high(count), middle(count))
+      call find_edges(section%shape, count, low, high, middle)
+      if (section%shape%walled) then
+         do side = 1, 2
+            if (.not. (section%core_shape%end_length(side) > 0.0_wp .or. &
+                       section%shape%end_width(side) > section%shape%width)) cycle
+            call cut_at(low, high, sign(0.5_wp*section%shape%depth - section%shape%end_length(side), &
+                                        side - 1.5_wp))
+         end do
+         middle = 0.5_wp*(low + high)
+      end if
+      area = section%shape%area_between(low, high)
+      core = min(section%core_shape%area_between(low, high), area)
+      moment = section%shape%moment_between(low, high)
+      core_moment = section%core_shape%moment_between(low, high)
+      allocate (rows(4, size(low)))
+      rows(1, :) = middle
+      rows(2, :) = core
+      rows(3, :) = middle
+      rows(4, :) = area - core
+      where (core > 0.0_wp) rows(1, :) = core_moment/core
+      where (area - core > 0.0_wp) rows(3, :) = (moment - core_moment)/(area - core)
+   end function strip_centroids
+
+   !> Cut the strip that contains a place in two there.
+   pure subroutine cut_at(low, high, place)
+      real(wp), allocatable, intent(inout) :: low(:), high(:)
+      !> [m]
+      real(wp), intent(in) :: place
+      real(wp) :: least
+      integer :: i
+
+      least = 1.0e-6_wp*(high(size(high)) - low(1))
+      do i = 1, size(low)
+         if (low(i) + least < place .and. place < high(i) - least) exit
+      end do
+      if (i > size(low)) return
+      low = [low(:i), place, low(i + 1:)]
+      high = [high(:i - 1), place, high(i:)]
+   end subroutine cut_at
 
    !> Lower and upper edge and middle of each strip [m]; those of mirrored strips differ by their sign alone.
    pure subroutine find_edges(outline, count, low, high, middle)

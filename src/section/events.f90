@@ -287,8 +287,9 @@ contains
       case default
          select case (rule%ultimate)
          case (ultimate_mander)
-            core_edge = state%eps0 + 0.5_wp*state%curvature*section%core_shape%depth
-            beyond = core_edge/section%core%eps_cu - 1.0_wp
+            core_edge = state%eps0 + state%curvature*(0.5_wp*section%core_shape%depth - &
+                                                      section%core_shape%end_inset(1))
+            beyond = core_edge/section%core(1)%eps_cu - 1.0_wp
          case (ultimate_steel)
             beyond = bar_ratio(section, state, at_rupture=.true.) - 1.0_wp
          case default
@@ -382,7 +383,7 @@ contains
       type(rule_type), intent(in) :: rule
       type(message_list), intent(inout) :: messages
 
-      if (rule%ultimate == ultimate_mander .and. .not. (confined .and. section%core%eps_cu < 1.0_wp)) then
+      if (rule%ultimate == ultimate_mander .and. .not. (confined .and. section%core(1)%eps_cu < 1.0_wp)) then
          call messages%add("ultimate = 'mander' needs the confined core: give ties and confined = true, "// &
                            "or take 'cover'")
       end if

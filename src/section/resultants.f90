@@ -2,16 +2,16 @@
 module rbs_section_resultants
    use rbs_base_kinds, only: wp
    use rbs_section_concrete_law, only: concrete_type, concrete_both, tension_zero
-   use rbs_section_cross_section, only: section_type
+   use rbs_section_cross_section, only: section_type, side_of
    use rbs_section_steel_law, only: steel_both
    implicit none
    private
 
    public :: laws_type, section_laws, resultants_type, resultants, force_scale
 
-   !> The laws of the concrete outside and inside the hoops.
+   !> The laws of the concrete outside the hoops, and inside those at y < 0 and y > 0.
    type :: laws_type
-      type(concrete_type) :: shell, core
+      type(concrete_type) :: shell, core(2)
       !> Whether the two differ
       logical :: confined = .false.
    end type laws_type
@@ -61,7 +61,7 @@ contains
          force = stress*section%strips%area(i)
          stiffness = tangent*section%strips%area(i)
          if (laws%confined .and. section%strips%core_area(i) > 0.0_wp) then
-            call concrete_both(laws%core, strain, stress_core, tangent_core)
+            call concrete_both(laws%core(side_of(section%strips%y(i))), strain, stress_core, tangent_core)
             force = force + (stress_core - stress)*section%strips%core_area(i)
             stiffness = stiffness + (tangent_core - tangent)*section%strips%core_area(i)
          end if
@@ -110,7 +110,7 @@ contains
             strain = eps0 - curvature*section%bar_y(i)
             call steel_both(section%steels(section%bar_steel(i)), strain, stress, tangent)
             if (section%bar_in_core(i)) then
-               call concrete_both(laws%core, strain, displaced, slope)
+               call concrete_both(laws%core(side_of(section%bar_y(i))), strain, displaced, slope)
             else
                call concrete_both(laws%shell, strain, displaced, slope)
             end if

@@ -1,33 +1,26 @@
 !> Makes a section from its record.
 !>
 !> Figures of a section and of points of its diagrams, with their names.
-!>
-!> Confinement of the core by hoops, ties or a spiral (Mander, Priestley, Park 1988, ASCE 114(8)).
-!>
-!> The lateral stress is the mean of both directions, with the arches between the bars of each face. The
-!> layered hinge (`python/rbsdem/section/strips.py`) takes the stress of the direction of loading alone and
-!> spreads the held bars evenly around the core; it has its own formula, as its parameters are fitted with it.
 module rbs_section_section_build
    use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete
-   use rbs_section_cross_section, only: enclose_core, no_ties, section_type, cut_strips, spiral, &
-                                        circular_hoops, hoop_area
+   use rbs_section_confinement, only: confinement_of, form_of_diagram, hooped_core, no_ties, ties, transverse_type
+   use rbs_section_cross_section, only: enclose_core, hooped_core_of, section_type, cut_strips, side_of
    use rbs_section_events, only: point_type
-   use rbs_section_section_record, only: find_steel, section_record
-   use rbs_section_shape, only: new_core, shape_type, thickest_bar
+   use rbs_section_section_record, only: find_steel, section_record, side_names
+   use rbs_section_shape, only: thickest_bar
    use rbs_section_shear_diagram, only: shear_point
    implicit none
    private
 
-   public :: make_section, build_section, outline_core, figures_of_section, values_of_point, &
-             values_of_shear_point, confine, volumetric_ratio
+   public :: make_section, build_section, figures_of_section, values_of_point, values_of_shear_point
 
    !> Area, second moment about the centroid and shear area of the outline [m2, m4, m2], distance of the
    !> centroid from mid-depth [m]; law of the plain concrete [Pa]; then the confined core with its sizes [m],
-   !> zero without hoops.
+   !> that of a wall at y < 0, zero without hoops.
    character(len=16), parameter, public :: section_figures(19) = [character(len=16) :: &
       'area', 'inertia', 'shear_area', 'centroid', 'fc', 'ft', 'ec', 'eps0', 'n', 'decay', 'fcc', 'eps_cc', &
       'r', 'eps_cu', 'effectiveness', 'lateral_stress', 'ratio', 'width', 'depth']
@@ -59,7 +52,9 @@ contains
       if (allocated(error)) return
       call take_data()
       call enclose_core(section)
-      if (section%transverse%kind /= no_ties) then
+      if (section%shape%walled) then
+         call check_wall(section, messages)
+      else if (section%transverse%kind /= no_ties) then
          call check_core(section, messages)
       else if (section%cover >= 0.5_wp*section%shape%depth .or. &
                section%side_cover >= 0.5_wp*section%shape%width) then
@@ -91,6 +86,7 @@ contains
             section%bar_area(:) = record%bars%area
             section%bar_steel(:) = [(find_steel(record, record%bars%steel(i)), i=1, bars)]
          end if
+         if (section%shape%walled) call take_boundaries()
          associate (given => record%hoops, hoops => section%transverse)
             if (given%kind == no_ties) return
             hoops%kind = given%kind
@@ -101,6 +97,26 @@ contains
             hoops%steel = record%steels(find_steel(record, given%steel))%law()
          end associate
       end subroutine take_data
+
+      !> Outline and hoops at the ends of a wall.
+      subroutine take_boundaries()
+         integer :: i, side
+
+         section%shape%end_width = section%shape%width
+         if (.not. allocated(record%boundaries)) return
+         do i = 1, size(record%boundaries)
+            associate (given => record%boundaries(i))
+               do side = 1, 2
+                  if (given%side == side_names(3 - side)) cycle
+                  section%shape%end_length(side) = given%length
+                  if (is_given(given%thickness)) section%shape%end_width(side) = given%thickness
+                  if (.not. is_given(given%hoop_diameter)) cycle
+                  section%boundary(side) = transverse_type(ties, given%hoop_diameter, given%hoop_spacing, &
+                     given%legs_along, given%legs_across, record%steels(find_steel(record, given%steel))%law())
+               end do
+            end associate
+         end do
+      end subroutine take_boundaries
 
       subroutine check_bars()
          real(wp) :: edge
@@ -142,6 +158,12 @@ contains
 
       call enclose_core(section)
       section%bar_in_core = abs(section%bar_y) <= 0.5_wp*section%core_shape%depth
+      if (section%shape%walled) then
+         associate (core => section%core_shape, side => side_of(section%bar_y))
+            section%bar_in_core = abs(abs(section%bar_y) - 0.5_wp*core%depth + core%end_inset(side) + &
+                                      0.5_wp*core%end_length(side)) <= 0.5_wp*core%end_length(side)
+         end associate
+      end if
       call confine(section, eps_spall)
       call cut_strips(section%shape, section%core_shape, strips, section%strips)
    end subroutine build_section
@@ -152,8 +174,8 @@ contains
 
       associate (core => section%core_shape, hoops => section%transverse)
          if (min(core%depth, core%width) > hoops%diameter) then
-            call check_legs('legs', hoops%legs, core%width)
-            call check_legs('legs_across', hoops%legs_across, core%depth)
+            call check_legs('ties: legs', hoops, hoops%legs, core%width, messages)
+            call check_legs('ties: legs_across', hoops, hoops%legs_across, core%depth, messages)
          else
             call messages%add('section: cover = '//to_text(section%cover)//' m and ties of '// &
                               to_text(hoops%diameter)//' m leave no core; the cover is measured '// &
@@ -161,48 +183,71 @@ contains
          end if
       end associate
 
-   contains
-
-      !> Side by side the legs fill no more than the core and the outer halves of two of them.
-      subroutine check_legs(name, legs, core)
-         character(len=*), intent(in) :: name
-         real(wp), intent(in) :: legs, core
-
-         if ((legs - 1.0_wp)*section%transverse%diameter <= core) return
-         call messages%add('ties: '//name//' = '//to_text(legs)//' bars of '// &
-                           to_text(section%transverse%diameter)//' m do not fit into a core of '// &
-                           to_text(core)//' m; give fewer, or thinner ones')
-      end subroutine check_legs
    end subroutine check_core
 
-   !> The core alone, of a valid record; its hoops may be taken as round.
-   subroutine outline_core(record, round, core)
-      type(section_record), intent(in) :: record
-      !> Whether the hoops are round although they are given as ties
-      logical, intent(in) :: round
-      type(shape_type), allocatable, intent(inout) :: core
-      real(wp) :: side, tie
+   !> Side by side the legs fill no more than the core and the outer halves of two of them.
+   subroutine check_legs(name, hoops, legs, core, messages)
+      character(len=*), intent(in) :: name
+      type(transverse_type), intent(in) :: hoops
+      real(wp), intent(in) :: legs, core
+      type(message_list), intent(inout) :: messages
 
-      side = record%cover
-      if (is_given(record%side_cover)) side = record%side_cover
-      tie = 0.0_wp
-      if (record%hoops%kind /= no_ties) tie = record%hoops%diameter
-      call new_core(record%shape, round .or. any(record%hoops%kind == [spiral, circular_hoops]), &
-                    2.0_wp*side + tie, 2.0_wp*record%cover + tie, core)
-   end subroutine outline_core
+      if ((legs - 1.0_wp)*hoops%diameter <= core) return
+      call messages%add(name//' = '//to_text(legs)//' bars of '//to_text(hoops%diameter)// &
+                        ' m do not fit into a core of '//to_text(core)//' m; give fewer, or thinner ones')
+   end subroutine check_legs
+
+   !> Boundary elements fit into the wall, and their hoops into them.
+   subroutine check_wall(section, messages)
+      type(section_type), intent(in) :: section
+      type(message_list), intent(inout) :: messages
+      integer :: side
+
+      associate (shape => section%shape, core => section%core_shape)
+         if (shape%width > shape%depth) then
+            call messages%add('wall: thickness = '//to_text(shape%width)//' m is more than the length, '// &
+                              to_text(shape%depth)//' m; draw it as a column')
+         end if
+         do side = 1, 2
+            if (.not. shape%end_length(side) > 0.0_wp) cycle
+            if (shape%end_length(side) > 0.5_wp*shape%depth) then
+               call messages%add('wall: boundary length '//to_text(shape%end_length(side))// &
+                                 ' m is more than half of '//to_text(shape%depth)//' m')
+            end if
+            if (shape%end_width(side) < shape%width) then
+               call messages%add('wall: boundary thickness '//to_text(shape%end_width(side))// &
+                                 ' m must not be below that of the web, '//to_text(shape%width)//' m')
+            end if
+            if (section%boundary(side)%kind == no_ties) cycle
+            if (min(core%end_width(side), core%end_length(side)) > section%boundary(side)%diameter) then
+               call check_legs('boundary: legs_along', section%boundary(side), section%boundary(side)%legs, &
+                               core%end_width(side), messages)
+               call check_legs('boundary: legs_across', section%boundary(side), &
+                               section%boundary(side)%legs_across, core%end_length(side), messages)
+            else
+               call messages%add('wall: cover = '//to_text(section%cover)//' m and hoops of '// &
+                                 to_text(section%boundary(side)%diameter)//' m leave no core in a '// &
+                                 'boundary of '//to_text(shape%end_length(side))//' m; the cover is '// &
+                                 'measured to the outer edge of the hoops')
+            end if
+         end do
+      end associate
+   end subroutine check_wall
 
    !> In the order of `section_figures`.
    pure function figures_of_section(section) result(figures)
       type(section_type), intent(in) :: section
       real(wp) :: figures(size(section_figures))
+      type(hooped_core) :: core
 
       figures = 0.0_wp
-      associate (shape => section%shape, p => section%plain, c => section%core)
+      associate (shape => section%shape, p => section%plain, c => section%core(1))
          figures(:10) = [shape%area(), shape%second_moment(), shape%shear_area(), shape%centroid(), &
                         p%fc, p%ft, p%ec, p%eps0, p%n, p%decay]
-         if (section%transverse%kind == no_ties) return
-         figures(11:) = [c%fc, c%eps0, c%n, c%eps_cu, section%effectiveness, section%lateral_stress, &
-                         volumetric_ratio(section), section%core_shape%width, section%core_shape%depth]
+         if (.not. section%confinement(1)%ratio > 0.0_wp) return
+         core = hooped_core_of(section, 1)
+         figures(11:) = [c%fc, c%eps0, c%n, c%eps_cu, section%confinement(1)%effectiveness, &
+                         section%confinement(1)%stress, section%confinement(1)%ratio, core%width, core%depth]
       end associate
    end function figures_of_section
 
@@ -222,81 +267,28 @@ contains
       values = [point%curvature, point%moment, point%force, point%strain]
    end function values_of_shear_point
 
-   !> Set the laws of core and cover, the lateral stress and its effectiveness. Hoops around a void do not
-   !> confine the walls between them: the inner ones bow into the void.
+   !> Set confinement and laws of core and cover.
    pure subroutine confine(section, eps_spall)
       type(section_type), intent(inout) :: section
       !> Strain at which the cover has spalled
       real(wp), intent(in) :: eps_spall
-      real(wp) :: ratio, eps_cu, yield
+      type(hooped_core) :: core
+      real(wp) :: eps_cu
+      integer :: side
 
       section%core = section%plain
       section%shell = section%plain
-      section%lateral_stress = 0.0_wp
-      section%effectiveness = 0.0_wp
-      if (section%transverse%kind == no_ties) return
-      if (.not. min(section%core_shape%width, section%core_shape%depth) > 0.0_wp) return
-      if (.not. section%shape%hollow) section%effectiveness = effectiveness(section)
-      ratio = volumetric_ratio(section)
-      yield = section%transverse%steel%fy
-      ! The ratio is the sum of both directions; half of it is their mean.
-      section%lateral_stress = 0.5_wp*section%effectiveness*ratio*yield
-      section%core = confined_concrete(section%plain, section%lateral_stress, 0.0_wp)
-      eps_cu = 0.004_wp + 1.4_wp*ratio*yield*section%transverse%steel%eps_u/section%core%fc
-      section%core%eps_cu = eps_cu
-      section%shell = spalling_concrete(section%plain, eps_spall)
+      do side = 1, 2
+         core = hooped_core_of(section, side)
+         section%confinement(side) = confinement_of(core, form_of_diagram)
+         associate (ratio => section%confinement(side)%ratio, steel => core%hoops%steel)
+            if (.not. ratio > 0.0_wp) cycle
+            section%core(side) = confined_concrete(section%plain, section%confinement(side)%stress, 0.0_wp)
+            eps_cu = 0.004_wp + 1.4_wp*ratio*steel%fy*steel%eps_u/section%core(side)%fc
+            section%core(side)%eps_cu = eps_cu
+            section%shell = spalling_concrete(section%plain, eps_spall)
+         end associate
+      end do
    end subroutine confine
-
-   !> Volume of transverse steel over that of the core: the sum of both directions. A round hoop has two legs
-   !> in each, which gives its 4 A/(d s).
-   pure real(wp) function volumetric_ratio(section) result(ratio)
-      type(section_type), intent(in) :: section
-
-      ratio = 0.0_wp
-      if (section%transverse%kind == no_ties) return
-      associate (t => section%transverse, core => section%core_shape)
-         ratio = t%legs*hoop_area(t)/(t%spacing*core%width) + &
-                 t%legs_across*hoop_area(t)/(t%spacing*core%depth)
-      end associate
-   end function volumetric_ratio
-
-   !> k_e: the share of the core that is confined halfway between two hoops.
-   pure real(wp) function effectiveness(section) result(k_e)
-      type(section_type), intent(in) :: section
-      real(wp) :: b_c, d_c, clear, part, core
-
-      b_c = section%core_shape%width
-      d_c = section%core_shape%depth
-      core = section%core_shape%area()
-      clear = max(0.0_wp, section%transverse%spacing - section%transverse%diameter)
-      part = max(0.0_wp, 1.0_wp - 0.5_wp*clear/d_c)
-      select case (section%transverse%kind)
-      case (spiral)
-         k_e = part
-      case (circular_hoops)
-         k_e = part**2
-      case default
-         k_e = part*max(0.0_wp, 1.0_wp - 0.5_wp*clear/b_c)
-         k_e = k_e*max(0.0_wp, 1.0_wp - arches(section, b_c, d_c)/(6.0_wp*core))
-      end select
-      k_e = min(1.0_wp, k_e/(1.0_wp - min(0.5_wp, sum(section%bar_area)/core)))
-   end function effectiveness
-
-   !> Sum of the squares of the clear distances, around the core, between the bars that legs hold [m2].
-   !> A leg holds one bar at each of its ends; between two such bars the concrete forms an arch.
-   pure real(wp) function arches(section, b_c, d_c)
-      type(section_type), intent(in) :: section
-      !> Core between hoop centre lines [m]
-      real(wp), intent(in) :: b_c, d_c
-      real(wp) :: inset, gaps, clear
-
-      inset = section%transverse%diameter + section%bar_diameter
-      gaps = max(1.0_wp, section%transverse%legs - 1.0_wp)
-      clear = max(0.0_wp, (b_c - inset)/gaps - section%bar_diameter)
-      arches = 2.0_wp*gaps*clear**2
-      gaps = max(1.0_wp, section%transverse%legs_across - 1.0_wp)
-      clear = max(0.0_wp, (d_c - inset)/gaps - section%bar_diameter)
-      arches = arches + 2.0_wp*gaps*clear**2
-   end function arches
 
 end module rbs_section_section_build

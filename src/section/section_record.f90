@@ -1,5 +1,6 @@
 !> Input of a section: its shape, cover, concrete, steels, bars and hoops, under the names of keys.
 module rbs_section_section_record
+   use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor, visited_record
@@ -7,13 +8,13 @@ module rbs_section_section_record
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: concrete_record
-   use rbs_section_cross_section, only: no_ties, ties, spiral, circular_hoops
+   use rbs_section_confinement, only: no_ties, ties, spiral, circular_hoops
    use rbs_section_shape, only: bar_size, new_shape, shape_choices, shape_type
    use rbs_section_steel_law, only: steel_record
    implicit none
    private
 
-   public :: section_record, bars_record, hoops_record, append_steel, find_steel
+   public :: section_record, bars_record, hoops_record, boundary_record, append_steel, find_steel
 
    integer, parameter :: most_bars = 100000
 
@@ -48,6 +49,24 @@ module rbs_section_section_record
       procedure :: name => name_of_hoops
    end type hoops_record
 
+   !> The end of a wall at y < 0, that at y > 0, or both.
+   character(len=5), parameter, public :: side_names(3) = [character(len=5) :: 'start', 'end', 'both']
+
+   !> A boundary element of a wall.
+   type, extends(visited_record) :: boundary_record
+      character(len=5) :: side = 'both'
+      !> Along the wall and across it; hoops: diameter of the bar and distance along the height [m]
+      real(wp) :: length = unset, thickness = unset, hoop_diameter = unset, hoop_spacing = unset
+      !> Diameter of its bars [m]
+      real(wp) :: bar_diameter = unset
+      !> Bars of a hoop parallel to the length of the wall and across it
+      real(wp) :: legs_along = 2.0_wp, legs_across = 2.0_wp
+      !> Number of the steel of the hoops
+      integer :: steel = unset_integer
+   contains
+      procedure :: visit => visit_boundary
+   end type boundary_record
+
    type, extends(visited_record) :: section_record
       !> Name of the shape
       character(len=16) :: shape_name = ''
@@ -62,6 +81,8 @@ module rbs_section_section_record
       type(steel_record), allocatable :: steels(:)
       type(bars_record) :: bars
       type(hoops_record) :: hoops
+      !> Of a wall
+      type(boundary_record), allocatable :: boundaries(:)
    contains
       procedure :: visit => visit_section
       procedure :: validate => validate_section
@@ -94,6 +115,26 @@ contains
       call v%key('area', self%area, 'm2', above_zero, 'area of the bar or row', most_bars)
       call v%key('steel', self%steel, '', any_number, 'numbers of their steels', most_bars)
    end subroutine visit_bars
+
+   subroutine visit_boundary(self, v)
+      class(boundary_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('side', self%side, 'end of the wall: start is y < 0, end y > 0', 'both start end')
+      call v%key('length', self%length, 'm', above_zero, 'length of the boundary element along the wall')
+      call v%key('thickness', self%thickness, 'm', above_zero, &
+                 'its thickness; without it that of the web', optional=.true.)
+      call v%key('bar_diameter', self%bar_diameter, 'm', bar_size, 'diameter of its bars, where some are rows', &
+                 optional=.true.)
+      call v%key('hoop_diameter', self%hoop_diameter, 'm', bar_size, &
+                 'diameter of its hoops; without it there are none', optional=.true.)
+      call v%key('hoop_spacing', self%hoop_spacing, 'm', spacings, 'distance between the hoops', &
+                 optional=.true.)
+      call v%key('legs_along', self%legs_along, '', above_zero, &
+                 'bars of a hoop parallel to the length of the wall')
+      call v%key('legs_across', self%legs_across, '', above_zero, 'bars of a hoop across the wall')
+      call v%key('steel', self%steel, '', any_number, 'number of the steel of the hoops', optional=.true.)
+   end subroutine visit_boundary
 
    !> Ties have legs to count; a spiral or round hoops have not.
    subroutine visit_hoops(self, v)
@@ -136,7 +177,35 @@ contains
       call self%bars%check('bars', messages)
       call check_references(self, messages)
       if (self%hoops%kind /= no_ties) call self%hoops%check(self%hoops%name(), messages)
+      if (.not. allocated(self%boundaries)) return
+      if (size(self%boundaries) > 0) call check_boundaries(self, messages)
    end subroutine validate_section
+
+   !> Boundary elements are those of a wall, one at each end, with whole hoops.
+   subroutine check_boundaries(self, messages)
+      type(section_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      integer :: i, ends
+
+      if (self%shape_name /= 'wall') call messages%add("boundary: it is for shape = 'wall'; remove it")
+      ends = 0
+      do i = 1, size(self%boundaries)
+         associate (boundary => self%boundaries(i))
+            call boundary%check('boundary', messages)
+            ends = ends + merge(1, 0, any(boundary%side == side_names([1, 3]))) + &
+                   merge(10, 0, any(boundary%side == side_names(2:)))
+            if (.not. is_given(boundary%hoop_diameter)) cycle
+            if (.not. is_given(boundary%hoop_spacing)) then
+               call messages%add('boundary: hoop_spacing is missing; give it a value in m')
+            end if
+            if (find_steel(self, boundary%steel) == 0) then
+               call messages%add('boundary: steel is not one of the steels of the section')
+            end if
+         end associate
+      end do
+      if (mod(ends, 10) > 1 .or. ends > 11) call messages%add("boundary: an end of the wall has two; "// &
+         "give side = 'both' once, or 'start' and 'end'")
+   end subroutine check_boundaries
 
    !> The lists of the bars have one length, and every steel is there.
    subroutine check_references(self, messages)

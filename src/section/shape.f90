@@ -1,10 +1,11 @@
 !> The shape of a section: a rectangle or a circle, one of them with a void of the same form in its middle, or
-!> a rectangle with a flange at one face.
+!> a rectangle with a flange at one face, or a wall, which may have a flange at each end.
 !>
 !> y runs from mid-depth. The concrete outline of a section is a shape, and so is the core that its hoops
 !> enclose; where there is a void, the core lies between hoops around the outside and hoops around the void,
-!> with the same cover at both. A hollow figure is the difference of two solid ones, one with a flange the sum
-!> of its web and the wings beside it; its hoops are around the web.
+!> with the same cover at both. A hollow figure is the difference of two solid ones, one with flanges the sum
+!> of its web and the wings beside it; the hoops of a tee are around its web. The core of a wall is what the
+!> hoops of its boundary elements enclose: two flanges without a web between them.
 module rbs_section_shape
    use rbs_base_constants, only: pi
    use rbs_base_key_visitor, only: key_visitor
@@ -15,11 +16,11 @@ module rbs_section_shape
 
    public :: shape_type, new_shape, new_core
 
-   character(len=16), parameter, public :: shape_names(5) = [character(len=16) :: &
-      'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle', 'tee']
+   character(len=16), parameter, public :: shape_names(6) = [character(len=16) :: &
+      'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle', 'tee', 'wall']
    !> The names as choices of a key
    character(len=*), parameter, public :: shape_choices = &
-      'rectangle circle hollow_rectangle hollow_circle tee'
+      'rectangle circle hollow_rectangle hollow_circle tee wall'
 
    !> Sizes of columns [m]: a larger number was given in millimetres.
    type(bound_type), parameter, public :: column_size = &
@@ -41,6 +42,10 @@ module rbs_section_shape
       !> Width of the flange with that of the web, its thickness [m]; whether it is at the face y = -depth/2
       real(wp) :: flange_width = 0.0_wp, flange_thickness = 0.0_wp
       logical :: flange_below = .false.
+      !> Whether it is a wall; widths with that of the web and lengths of what is at its ends y = -depth/2 and
+      !> y = depth/2, and how far that is from them [m]
+      logical :: walled = .false.
+      real(wp) :: end_width(2) = 0.0_wp, end_length(2) = 0.0_wp, end_inset(2) = 0.0_wp
    contains
       procedure :: area_between
       procedure :: moment_between
@@ -65,7 +70,7 @@ contains
 
       if (all(shape_names /= name)) return
       shape = shape_type(width, depth, round=index(name, 'circle') > 0, hollow=index(name, 'hollow') > 0, &
-                         flanged=name == 'tee')
+                         flanged=name == 'tee', walled=name == 'wall')
    end subroutine new_shape
 
    !> Make the shape that the hoops of an outline enclose: a round hoop encloses a circle, ties enclose a
@@ -93,20 +98,37 @@ contains
       void%depth = max(0.0_wp, self%depth - 2.0_wp*self%wall)
    end function void_of
 
-   !> Both wings of the flange beside the web, as one rectangle.
-   elemental type(shape_type) function wings_of(self) result(wings)
+   !> Both wings of a flange beside the web, as one rectangle; without a depth where there is none.
+   elemental type(shape_type) function wings_of(self, side) result(wings)
       type(shape_type), intent(in) :: self
+      !> 1 at the face y = -depth/2, 2 at the other
+      integer, intent(in) :: side
 
-      wings%width = self%flange_width - self%width
-      wings%depth = self%flange_thickness
+      if (self%walled) then
+         wings%width = self%end_width(side) - self%width
+         wings%depth = self%end_length(side)
+      else if (self%flanged .and. side == merge(1, 2, self%flange_below)) then
+         wings%width = self%flange_width - self%width
+         wings%depth = self%flange_thickness
+      end if
    end function wings_of
 
-   !> Where the middle of the flange is [m].
-   elemental real(wp) function middle_of_flange(self) result(y)
+   !> Where the middle of a flange is [m].
+   elemental real(wp) function middle_of_flange(self, side) result(y)
+      type(shape_type), intent(in) :: self
+      integer, intent(in) :: side
+      type(shape_type) :: wings
+
+      wings = wings_of(self, side)
+      y = merge(0.5_wp, -0.5_wp, side == 2)*(self%depth - wings%depth - 2.0_wp*self%end_inset(side))
+   end function middle_of_flange
+
+   !> Whether there may be flanges.
+   elemental logical function has_wings(self)
       type(shape_type), intent(in) :: self
 
-      y = merge(-0.5_wp, 0.5_wp, self%flange_below)*(self%depth - self%flange_thickness)
-   end function middle_of_flange
+      has_wings = self%flanged .or. self%walled
+   end function has_wings
 
    !> Integral of the width between two distances from mid-depth [m2].
    elemental real(wp) function area_between(self, lo, hi) result(area)
@@ -114,12 +136,15 @@ contains
       !> lo <= hi [m]
       real(wp), intent(in) :: lo, hi
       real(wp) :: middle
+      integer :: side
 
       area = solid_area_between(self, lo, hi)
       if (self%hollow) area = area - solid_area_between(void_of(self), lo, hi)
-      if (.not. self%flanged) return
-      middle = middle_of_flange(self)
-      area = area + solid_area_between(wings_of(self), lo - middle, hi - middle)
+      if (.not. has_wings(self)) return
+      do side = 1, 2
+         middle = middle_of_flange(self, side)
+         area = area + solid_area_between(wings_of(self, side), lo - middle, hi - middle)
+      end do
    end function area_between
 
    elemental real(wp) function solid_area_between(self, lo, hi) result(area)
@@ -144,14 +169,17 @@ contains
       real(wp), intent(in) :: lo, hi
       type(shape_type) :: wings
       real(wp) :: middle
+      integer :: side
 
       moment = solid_moment_between(self, lo, hi)
       if (self%hollow) moment = moment - solid_moment_between(void_of(self), lo, hi)
-      if (.not. self%flanged) return
-      wings = wings_of(self)
-      middle = middle_of_flange(self)
-      moment = moment + solid_moment_between(wings, lo - middle, hi - middle) + &
-               middle*solid_area_between(wings, lo - middle, hi - middle)
+      if (.not. has_wings(self)) return
+      do side = 1, 2
+         wings = wings_of(self, side)
+         middle = middle_of_flange(self, side)
+         moment = moment + solid_moment_between(wings, lo - middle, hi - middle) + &
+                  middle*solid_area_between(wings, lo - middle, hi - middle)
+      end do
    end function moment_between
 
    elemental real(wp) function solid_moment_between(self, lo, hi) result(moment)
@@ -178,7 +206,7 @@ contains
 
       area = solid_area(self)
       if (self%hollow) area = area - solid_area(void_of(self))
-      if (self%flanged) area = area + solid_area(wings_of(self))
+      if (has_wings(self)) area = area + (solid_area(wings_of(self, 1)) + solid_area(wings_of(self, 2)))
    end function area
 
    elemental real(wp) function solid_area(self)
@@ -192,17 +220,26 @@ contains
       class(shape_type), intent(in) :: self
 
       centroid = 0.0_wp
-      if (self%flanged) centroid = middle_of_flange(self)*solid_area(wings_of(self))/self%area()
+      if (has_wings(self)) centroid = (middle_of_flange(self, 1)*solid_area(wings_of(self, 1)) + &
+                                       middle_of_flange(self, 2)*solid_area(wings_of(self, 2)))/self%area()
    end function centroid
 
    !> Second moment of the area about its centroid [m4].
    elemental real(wp) function second_moment(self)
       class(shape_type), intent(in) :: self
+      type(shape_type) :: wings
+      real(wp) :: middle
+      integer :: side
 
       second_moment = solid_second_moment(self)
       if (self%hollow) second_moment = second_moment - solid_second_moment(void_of(self))
-      if (self%flanged) second_moment = second_moment + solid_second_moment(wings_of(self)) + &
-         solid_area(wings_of(self))*middle_of_flange(self)*(middle_of_flange(self) - self%centroid())
+      if (.not. has_wings(self)) return
+      do side = 1, 2
+         wings = wings_of(self, side)
+         middle = middle_of_flange(self, side)
+         second_moment = second_moment + solid_second_moment(wings) + &
+                         solid_area(wings)*middle*(middle - self%centroid())
+      end do
    end function second_moment
 
    elemental real(wp) function solid_second_moment(self)
@@ -241,7 +278,7 @@ contains
       real(wp), intent(in) :: y
 
       leg_share = 0.0_wp
-      if (.not. merge(self%depth, self%width, self%round) > 0.0_wp) return
+      if (.not. merge(self%depth, self%width, self%round) > 0.0_wp .and. .not. self%walled) return
       leg_share = 1.0_wp
       if (self%round) leg_share = 2.0_wp*sqrt(max(0.0_wp, (0.5_wp*self%depth)**2 - y**2))/self%depth
    end function leg_share

@@ -15,7 +15,7 @@ module rbs_section_shear_diagram
    use rbs_section_concrete_law, only: tension_choices, tension_place
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
-   use rbs_section_cross_section, only: section_type, cut_strips
+   use rbs_section_cross_section, only: section_type, cut_strips, side_of
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio, couple
    implicit none
    private
@@ -168,7 +168,9 @@ contains
          associate (cut => model%flow%section, laws => model%flow%laws)
             do i = 1, record%layers
                model%layers(i)%concrete = laws%shell
-               if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) model%layers(i)%concrete = laws%core
+               if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) then
+                  model%layers(i)%concrete = laws%core(side_of(cut%strips%y(i)))
+               end if
                model%layers(i)%stirrup = section%transverse%steel
                model%layers(i)%rho_z = transverse_ratio(cut, cut%strips%y(i), &
                             cut%strips%area(i)/cut%strips%dy)

@@ -15,7 +15,8 @@ module rbs_section_shear_flow
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: state_type
    use rbs_section_concrete_law, only: concrete_type, concrete_stress
-   use rbs_section_cross_section, only: section_type, no_ties, hoop_area
+   use rbs_section_confinement, only: hoop_area, no_ties
+   use rbs_section_cross_section, only: section_type, side_of
    use rbs_section_mcft_layer, only: layer_type, layer_state, layer_stress, solve_layer, stress_of_state
    use rbs_section_resultants, only: laws_type, force_scale
    use rbs_section_steel_law, only: steel_stress
@@ -105,14 +106,15 @@ contains
             concrete_force(i) = mean_stress(laws%shell, strain, state%curvature*strips%dy)*strips%area(i)
             if (laws%confined .and. strips%core_area(i) > 0.0_wp) then
                concrete_force(i) = concrete_force(i) + strips%core_area(i)* &
-                                   (concrete_stress(laws%core, strain) - concrete_stress(laws%shell, strain))
+                                   (concrete_stress(laws%core(side_of(strips%y(i))), strain) - &
+                                    concrete_stress(laws%shell, strain))
             end if
          end do
          do i = 1, size(section%bar_y)
             strain = state%eps0 - state%curvature*section%bar_y(i)
             bar_force(i) = steel_stress(section%steels(section%bar_steel(i)), strain)
             if (section%bar_in_core(i)) then
-               bar_force(i) = bar_force(i) - concrete_stress(laws%core, strain)
+               bar_force(i) = bar_force(i) - concrete_stress(laws%core(side_of(section%bar_y(i))), strain)
             else
                bar_force(i) = bar_force(i) - concrete_stress(laws%shell, strain)
             end if

@@ -7,9 +7,10 @@ module test_section
    use rbs_section_balance, only: follow
    use rbs_section_concrete_law, only: concrete_both, concrete_stress, concrete_type, confined_concrete, &
                                        plain_concrete, spalling_concrete, tension_zero
-   use rbs_section_section_build, only: build_section, volumetric_ratio
+   use rbs_section_section_build, only: build_section
    use rbs_section_resultants, only: section_laws
-   use rbs_section_cross_section, only: section_type, spiral, ties
+   use rbs_section_confinement, only: spiral, ties
+   use rbs_section_cross_section, only: section_type
    use rbs_section_mcft_layer, only: layer_state, layer_type, solve_layer
    use rbs_section_shape, only: new_shape
    use rbs_section_shear_flow, only: transverse_ratio
@@ -118,9 +119,9 @@ contains
       k_e = (1.0_wp - (2.0_wp*0.28_wp**2 + 4.0_wp*0.18_wp**2)/(6.0_wp*core))*(1.0_wp - 0.1_wp/0.66_wp)* &
             (1.0_wp - 0.1_wp/0.86_wp)/(1.0_wp - 2.0e-3_wp/core)
       rho = 0.25_wp*pi*1.0e-4_wp/0.11_wp*(2.0_wp/0.33_wp + 3.0_wp/0.43_wp)
-      call check_close(error, [section%effectiveness, volumetric_ratio(section), section%lateral_stress], &
-                       [k_e, rho, 0.5_wp*k_e*rho*400.0e6_wp], 1.0e-12_wp, 0.0_wp, 'ties: k_e, rho_s, f_l')
-      call check_close(error, section%core%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core%fc, &
+      call check_close(error, [section%confinement(1)%effectiveness, section%confinement(1)%ratio, &
+                               section%confinement(1)%stress], [k_e, rho, 0.5_wp*k_e*rho*400.0e6_wp], 1.0e-12_wp, 0.0_wp, 'ties: k_e, rho_s, f_l')
+      call check_close(error, section%core(1)%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core(1)%fc, &
                        1.0e-12_wp, 0.0_wp, 'eps_cu')
    end subroutine confinement
 

@@ -252,7 +252,7 @@ def test_sizes_of_hollow_sections_in_closed_form():
         assert len(around) == section.inner_layout.number
         assert max(around) == pytest.approx(inner)
         # Its walls are not confined.
-        assert (strips.confining_stress, section.confinement.lateral_stress) == (0.0, 0.0)
+        assert (*strips.confining_stress, section.confinement.lateral_stress) == (0.0, 0.0, 0.0)
         assert section.confinement.fcc == pytest.approx(35e6)
         # The part near a face is what the strips have there.
         pieces = [(strip.y, strip.area) for strip in (*strips.core, *strips.cover)]

@@ -328,6 +328,7 @@ def test_confining_stress_of_a_spiral_by_hand():
         cover=0.03,
     )
     # Core of 0.33 m: rho_s = 0.015867, rho_cc = 0.029385, k_e = (1 - 0.05/0.66)/(1 - rho_cc).
-    stress, ratio = hinge._spiral(section, 0.33)
-    assert ratio == pytest.approx(0.015867, rel=1e-4)
-    assert stress == pytest.approx(0.5 * 0.952227 * 0.015867 * 400e6, rel=1e-4)
+    strips = hinge.strips_of(section, 10)
+    assert strips.hoop_pressure == pytest.approx([0.015867 * 400e6] * 2, rel=1e-4)
+    stress = 0.5 * 0.952227 * 0.015867 * 400e6
+    assert strips.confining_stress == pytest.approx([stress] * 2, rel=1e-4)

@@ -163,10 +163,24 @@ class Section(_Fields, ABC):
         """Return the sizes of the concrete that change when it is upside down."""
         return {}
 
-    @property
-    @abstractmethod
+    @cached_property
     def effective_depth(self) -> float:
-        """From the compression face to the centre of the bars in the half in tension [m]."""
+        """From the compression face to the centre of the bars in the half in tension [m].
+
+        Bars within a twentieth of the depth from its middle count in part, those at mid-depth or
+        beyond not at all. 0.8 of the depth if there is no other bar.
+        """
+        parts = [
+            (y, area, share)
+            for y, area, _ in self.bars
+            if (share := 2.0 * _share_in_tension(y, self.depth) - 1.0) > 0.0
+        ]
+        if not parts:
+            return 0.8 * self.depth
+        weight = sum(area * share for _, area, share in parts)
+        centre = 0.5 * self.depth + sum(y * area * share for y, area, share in parts) / weight
+        known = max(share for *_, share in parts)
+        return known * centre + (1.0 - known) * 0.8 * self.depth
 
     @property
     @abstractmethod
@@ -297,6 +311,16 @@ class Section(_Fields, ABC):
         return _core.joined(parts)
 
     @property
+    def hooped(self) -> tuple[float, float]:
+        """Depths from the faces y < 0 and y > 0 within which hoops hold the bars [m]."""
+        return 0.5 * self.depth, 0.5 * self.depth
+
+    @property
+    def confines(self) -> bool:
+        """Whether hoops confine a core."""
+        return self.ties is not None
+
+    @property
     def hollow(self) -> bool:
         """Whether there is a void in the middle."""
         return self.wall is not None
@@ -390,8 +414,11 @@ class Section(_Fields, ABC):
 
     @property
     def confinement(self) -> Confinement | None:
-        """The confined core (Mander, Priestley, Park 1988); None without ties."""
-        if self.ties is None:
+        """The confined core (Mander, Priestley, Park 1988); None without hoops around it.
+
+        Of a wall it is that of the boundary element at y < 0.
+        """
+        if not self._figures["ratio"] > 0.0:
             return None
         return Confinement(**{f.name: self._figures[f.name] for f in fields(Confinement)})
 
@@ -563,25 +590,6 @@ class RectangularSection(Section):
     def web_width(self) -> float:
         """Width that carries shear: of a hollow section that of both webs [m]."""
         return 2.0 * self._web if self.hollow else self.width
-
-    @cached_property
-    def effective_depth(self) -> float:
-        """From the compression face to the centre of the bars in the half in tension [m].
-
-        Bars within a twentieth of the depth from its middle count in part, those at mid-depth or
-        beyond not at all. 0.8 of the depth if there is no other bar.
-        """
-        parts = [
-            (y, area, share)
-            for y, area, _ in self.bars
-            if (share := 2.0 * _share_in_tension(y, self.depth) - 1.0) > 0.0
-        ]
-        if not parts:
-            return 0.8 * self.depth
-        weight = sum(area * share for _, area, share in parts)
-        centre = 0.5 * self.depth + sum(y * area * share for y, area, share in parts) / weight
-        known = max(share for *_, share in parts)
-        return known * centre + (1.0 - known) * 0.8 * self.depth
 
     def part(self, depth: float) -> tuple[float, float]:
         """Return area and first moment about mid-depth of the concrete near the compression face.
@@ -929,7 +937,8 @@ def checked_section(section: object) -> Section:
     if isinstance(section, Section):
         return section
     raise InputError(
-        f"section = {_arguments.shown(section)} must be a RectangularSection or a CircularSection"
+        f"section = {_arguments.shown(section)} must be a RectangularSection, a CircularSection or "
+        "a WallSection"
     )
 
 

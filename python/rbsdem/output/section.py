@@ -215,6 +215,8 @@ def hoop_lines(section: Section) -> list[Array]:
         return []
     thickness, bend = section.ties.diameter, 0.5 * (section.bar_diameter or 0.0)
     lines = [section.hoop_line(inset, bend + thickness - inset) for inset in (0.0, thickness)]
+    if not lines[0].size:  # Those of a wall are its legs.
+        return []
     if section.hollow:
         lines += [section.void(section.cover + inset) for inset in (thickness, 0.0)]
     return lines

@@ -12,6 +12,7 @@ from rbsdem.model.column import SPRING_GROUPS, Column, Damping
 from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
 from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
+from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.section.building import Building, Frame
 from rbsdem.section.layered import LayeredColumn, LayeredModel
@@ -113,6 +114,8 @@ def _section(groups: Groups) -> Section:
         steels.setdefault(number, Steel(**values))
     sizes = _one(groups, "section")
     shape = sizes.pop("shape")
+    if shape == "wall":
+        return _wall(groups, sizes, steels)
     kind = SHAPES[shape]
     parts: dict[str, Any] = {"concrete": Concrete(**_one(groups, "concrete"))}
     if "bars" in groups:
@@ -139,6 +142,36 @@ def _section(groups: Groups) -> Section:
         if name not in known or (solid and name in ("wall", "side_wall", "inner_layout")):
             raise InputError(f"section: {name} is not for shape = {shape!r}; remove it")
     return kind(**sizes, **parts)
+
+
+def _wall(groups: Groups, sizes: dict[str, Any], steels: Mapping[int | None, Steel]) -> WallSection:
+    """Return a wall; its bars belong to the boundary element that they are nearer to."""
+    half = 0.5 * sizes["depth"]
+    bars = _one(groups, "bars") if "bars" in groups else {"y": (), "area": (), "steel": ()}
+    rows = list(zip(bars["y"], bars["area"], bars["steel"], strict=True))
+    ends: dict[str, Boundary] = {}
+    for group in groups.get("boundary", []):
+        given = _core.typed("boundary", group)
+        side, hoops = given.get("side", "both"), None
+        if "hoop_diameter" in given:
+            legs = {name: given[name] for name in ("legs_along", "legs_across") if name in given}
+            hoops = Hoops(
+                given["hoop_diameter"], given["hoop_spacing"], steels[given["steel"]], **legs
+            )
+        sign = -1.0 if side == "start" else 1.0
+        own = [(half - sign * y, a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0]
+        thick = {name: given.get(name) for name in ("thickness", "bar_diameter")}
+        ends[side] = Boundary(given["length"], own, hoops, **thick)
+    meshes: dict[str, Curtain | None] = dict.fromkeys(("vertical", "horizontal"))
+    for group in groups.get("curtain", []):
+        given = _core.typed("curtain", group)
+        direction = given.pop("direction", "vertical")
+        meshes[direction] = Curtain(**given | {"steel": steels[given["steel"]]})
+    boundary = ends.get("both") or ((ends["start"], ends["end"]) if ends else None)
+    cover = {"cover": sizes["cover"]} if "cover" in sizes else {}
+    concrete = Concrete(**_one(groups, "concrete"))
+    made = {"boundary": boundary, "concrete": concrete, **meshes, **cover}
+    return WallSection(sizes["depth"], sizes["width"], **made)
 
 
 def _one(groups: Groups, name: str) -> dict[str, Any]:

@@ -114,7 +114,7 @@ def checked_load(section: Section, axial_load: Any) -> float:
 def is_confined(section: Section, confined: Any) -> bool:
     """Return whether the core is taken as confined; refuse it without transverse bars."""
     wanted = _arguments.boolean(confined, "confined")
-    if wanted and section.ties is None:
+    if wanted and not section.confines:
         raise InputError(
             f"confined = True needs transverse bars that confine: give the section {section.hoops}"
         )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import cast
+from typing import Any, cast
 
 from rbsdem import _core
 from rbsdem.errors import InputError
@@ -57,16 +57,16 @@ class Strips:
     core, cover : tuple of Strip
         Concrete within the centre lines of the transverse bars, and around them; bars are not
         deducted.
-    confining_stress : float
-        Effective, along and across the loading alike, as the transverse bars yield [Pa].
-    tie_ratio : float
-        Volume of transverse bars over that of the core.
+    confining_stress : tuple of float
+        Effective, as the transverse bars yield, of the core at y < 0 and at y > 0 [Pa].
+    hoop_pressure : tuple of float
+        Volume of transverse bars over that of the core, times their yield stress, likewise [Pa].
     """
 
     core: tuple[Strip, ...]
     cover: tuple[Strip, ...]
-    confining_stress: float
-    tie_ratio: float
+    confining_stress: tuple[float, float]
+    hoop_pressure: tuple[float, float]
 
 
 def strips_of(
@@ -74,21 +74,15 @@ def strips_of(
 ) -> Strips:
     """Cut a section into strips of equal thickness across the direction of loading.
 
-    The strips are those of the Fortran part (`src/section/cross_section.f90`). The confinement is
-    that of Mander, Priestley and Park (1988), ASCE Journal of Structural Engineering 114(8), as the
-    layered hinge takes it: the confining stress of the direction of loading alone, and the bars
-    that the legs hold spread evenly around the core. `src/section/section_build.f90`, which the
-    moment-curvature diagram uses, takes the mean of both directions and the arches between the bars
-    of each face. For a spiral the two differ only in the cap on the share of the bars (8 % here,
-    50 % there), and single round hoops count as a spiral here. They stay apart because the
-    parameters of the hinge are fitted with the form used here.
+    The strips, and the confinement of Mander, Priestley and Park (1988) in the form that the layers
+    take, are those of the Fortran part (`src/section/cross_section.f90`, `confinement.f90`).
 
     Parameters
     ----------
     section : Section
         The section.
     number : int
-        Number of strips.
+        Number of strips; the boundary elements of a wall cut them further.
     restrained : int, optional
         Longitudinal bars that are held in a corner of a hoop or by a tie. By default the four
         corners, and four more for each leg beyond two (in proportion for a part of one), up to the
@@ -101,60 +95,27 @@ def strips_of(
     Strips
         In order of y; in each strip core and cover have centroids of their own.
     """
-    tie = section.ties.diameter if section.ties else 0.0
-    # By how much the core, between the centre lines of the hoops, is smaller than the outline.
-    less = [2 * float(section.side_cover or 0.0) + tie, 2 * section.cover + tie]
-    round_core = round_core or (section.ties is not None and section.ties.is_round)
-    given = {"round_core": round_core, "number": number}
-    strips = _core.evaluate("section_strips", section._statement, **given).rows
-    if round_core:
-        confinement = _spiral(section, section.depth - less[1])
-    else:
-        confinement = _hoops(section, section.width - less[0], section.depth - less[1], restrained)
-    if section.hollow:
-        # The inner hoops bow into the void.
-        confinement = 0.0, confinement[1]
+    held = _restrained(section) if restrained is None else restrained
+    given: Any = {"round_core": round_core, "number": number, "held": float(held)}
+    answer = _core.evaluate("section_strips", section._statement, **given)
     # Slivers along the rim of the core are round-off.
     least = 1e-9 * section.gross_area
+    strips, (left, right, *pressures) = answer.rows, answer.values.tolist()
     return Strips(
         core=tuple(Strip(y, part) for y, part in strips[:, :2].tolist() if part > least),
         cover=tuple(Strip(y, part) for y, part in strips[:, 2:].tolist() if part > least),
-        confining_stress=confinement[0],
-        tie_ratio=confinement[1],
+        confining_stress=(left, right),
+        hoop_pressure=(pressures[0], pressures[1]),
     )
 
 
-def _hoops(
-    section: Section, core_width: float, core_depth: float, restrained: int | None
-) -> tuple[float, float]:
-    """Return the confining stress of rectangular hoops [Pa] and their volume ratio.
-
-    Effectiveness by the parabolas between the bars around the perimeter and between the hoops.
-    """
-    ties, bar = section.ties, section.bar_diameter or 0.0
-    if ties is None:
-        return 0.0, 0.0
-    ratio = ties.legs * math.pi / 4 * ties.diameter**2
-    ratio /= ties.spacing * core_width
-    area = core_width * core_depth
-    # With two legs the four corners alone are held; from three on the bars stand for all of them.
-    corners = min(max(3.0 - ties.legs, 0.0), 1.0)
-    clear = core_width - bar, core_depth - bar
-    parabolas = corners * 2 * (clear[0] ** 2 + clear[1] ** 2) / 6
-    bars = max(4, _restrained(section, ties.legs) if restrained is None else restrained)
-    clear_one = max(0.0, 2 * (core_width + core_depth) / bars - bar)
-    parabolas += (1 - corners) * bars * clear_one**2 / 6
-    gap = ties.spacing - ties.diameter
-    effective = max(0.0, 1 - parabolas / area) / (1 - _bars(section, area))
-    effective *= max(0.0, 1 - gap / (2 * core_width)) * max(0.0, 1 - gap / (2 * core_depth))
-    return effective * ratio * ties.steel.fy, 2 * ratio
-
-
-def _restrained(section: Section, legs: float) -> float:
+def _restrained(section: Section) -> float:
     """Return how many bars the legs hold: the corners, and four for each leg beyond two.
 
     A diagonal leg is a part of one, and holds that part of four bars.
     """
+    if section.ties is None:
+        return 4
     if section.layout is not None:
         number: float = section.layout.number
     elif section.laid_out:
@@ -164,27 +125,7 @@ def _restrained(section: Section, legs: float) -> float:
     else:
         # An entry of `bars` may be a row of them.
         number = section.steel_area / (math.pi / 4 * cast(float, section.bar_diameter) ** 2)
-    return min(number, 4 + 4 * (legs - 2))
-
-
-def _spiral(section: Section, diameter: float) -> tuple[float, float]:
-    """Return the confining stress of a spiral [Pa] and its volume ratio.
-
-    Effectiveness by the parabola between two turns: (1 - s'/(2 d_s))/(1 - rho_cc).
-    """
-    ties = section.ties
-    if ties is None:
-        return 0.0, 0.0
-    ratio = math.pi * ties.diameter**2 / (diameter * ties.spacing)
-    gap = ties.spacing - ties.diameter
-    effective = max(0.0, 1 - gap / (2 * diameter))
-    effective /= 1 - _bars(section, math.pi / 4 * diameter**2)
-    return 0.5 * effective * ratio * ties.steel.fy, ratio
-
-
-def _bars(section: Section, core_area: float) -> float:
-    """Return the share of longitudinal bars in the core, up to the 8 % that codes allow."""
-    return min(0.08, section.steel_area / core_area)
+    return max(4, min(number, 4 + 4 * (section.ties.legs - 2)))
 
 
 @dataclass(frozen=True)
@@ -264,12 +205,10 @@ def hinge_joint(
     modulus = section.concrete_law["ec"]
     strength = given.concrete_strength * cylinder * (cylinder / 40e6) ** -given.concrete_size
     peak = 0.002 * given.peak_strain
-    relative = given.confinement * strips.confining_stress / cylinder
-    gain = -1.254 + 2.254 * math.sqrt(1 + 7.94 * relative) - 2 * relative
-    core = gain * strength
+    gains = [_gain(given.confinement * stress / cylinder) for stress in strips.confining_stress]
     # Beyond what the section carries the exponentials below have no meaning.
     bars = sum(given.steel_strength * steel.fy * area for _, area, steel in section.bars)
-    of_core = core * sum(strip.area for strip in strips.core)
+    of_core = sum(gains[strip.y > 0] * strength * strip.area for strip in strips.core)
     of_cover = strength * sum(strip.area for strip in strips.cover)
     _check(axial_load, bars, bars + of_core + of_cover)
     ratio = axial_load / (cylinder * section.gross_area)
@@ -277,9 +216,6 @@ def hinge_joint(
     def by_axial(value: float, exponent: float) -> float:
         return value * math.exp(exponent * (ratio - 0.2))
 
-    core_peak = peak * (1 + 5 * (gain - 1))
-    tie_yield = section.ties.steel.fy if section.ties else 0.0
-    core_ultimate = 0.004 + 0.14 * strips.tie_ratio * tie_yield / core
     yield_stress = max(steel.fy for _, _, steel in section.bars)
     bond = yield_stress / 1e6 * cast(float, section.bar_diameter)
     one_length = by_axial(1.0, given.hinge_axial) * (0.08 * length + 0.022 * bond)
@@ -303,10 +239,16 @@ def hinge_joint(
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
-    core_slope = 0.2 * core / max(core_ultimate - core_peak, 0.002)
-    softening = given.core_softening * core_slope
+    core_slopes = []
+    for gain, pressure in zip(gains, strips.hoop_pressure, strict=True):
+        ultimate = 0.004 + 0.14 * pressure / (gain * strength)
+        core_slopes.append(
+            0.2 * gain * strength / max(ultimate - peak * (1 + 5 * (gain - 1)), 0.002)
+        )
     for strip in strips.core:
-        layers.append((strip.y, concrete(round(strip.area, 12), core, core_peak, softening)))
+        gain, softening = gains[strip.y > 0], given.core_softening * core_slopes[strip.y > 0]
+        at_peak = gain * strength, peak * (1 + 5 * (gain - 1))
+        layers.append((strip.y, concrete(round(strip.area, 12), *at_peak, softening)))
     cover_slope = 0.8 * strength / 0.004
     softening = given.cover_softening * cover_slope
     for strip in strips.cover:
@@ -314,10 +256,9 @@ def hinge_joint(
     slip = given.slip_length * bond
     high = min(axial_load / section.gross_area / 40e6, 1.5)
     buckles = given.buckling > 0 and given.fatigue > 0
-    bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * (steel_length + slip)
 
     @cache
-    def bar(area: float, steel: Steel) -> SteelSpring:
+    def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
         fy, fu = (given.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
         stiffness = steel.es * area / (steel_length + slip)
         return unchecked(
@@ -328,11 +269,13 @@ def hinge_joint(
             r0=given.r0 * math.exp(given.r0_stress * (high - 0.15)),
             **{name: getattr(given, name) for name in ("cr1", "cr2", "isotropic_hardening")},
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
-            d_buckle=bows if buckles else None,
+            d_buckle=_buckling_strain(pressure, ratio) * (steel_length + slip) if buckles else None,
             buckling=given.buckling if buckles else 0.0,
         )
 
-    layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
+    for y, area, steel in section.bars:
+        hooped = abs(y) >= 0.5 * depth - section.hooped[y > 0]
+        layers.append((y, bar(area, steel, strips.hoop_pressure[y > 0] if hooped else 0.0)))
     centre = section.centroid
     of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
@@ -356,12 +299,20 @@ def hinge_joint(
             "compression_length": (0.0, _LONGEST_CONCRETE * length / steel_length),
             "stiffness": (0.0, _STIFFEST / by_axial(1.0, given.stiffness_axial)),
             "contact": (0.0, _LARGEST_CONTACT),
-            "core_softening": (_LEAST_SOFTENING / core_slope, math.inf),
+            "core_softening": (_LEAST_SOFTENING / max(core_slopes), math.inf),
             "cover_softening": (_LEAST_SOFTENING / cover_slope, math.inf),
             "hardening": (_least_hardening(section, given), math.inf),
             "fatigue": (0.0, 1 / _LEAST_ENDURANCE),
         },
     )
+
+
+def _gain(stress: float) -> float:
+    """Return the strength of confined concrete over that of plain concrete (Mander 1988).
+
+    `stress` is the confining stress over that strength.
+    """
+    return -1.254 + 2.254 * math.sqrt(1 + 7.94 * stress) - 2 * stress
 
 
 def _buckling_strain(confinement: float, ratio: float) -> float:
