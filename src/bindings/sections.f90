@@ -176,7 +176,9 @@ contains
 
          call enclose_core(section, round_core)
          ! What no hoop confines is no core.
-         if (section%transverse%kind == no_ties .and. .not. section%shape%walled) section%core_shape = shape_type()
+         if (section%transverse%kind == no_ties .and. .not. section%shape%walled) then
+            section%core_shape = shape_type()
+         end if
          answer%rows = strip_centroids(section, number)
          form = form_of_hinge
          if (section%shape%walled) form = form_of_wall

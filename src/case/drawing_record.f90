@@ -71,6 +71,8 @@ module rbs_case_drawing_record
       character(len=32) :: version = ''
       !> From an end to where the moment is zero [m], the axial load [N], bodies of that part
       real(wp) :: height = unset, axial_load = unset
+      !> Moment over shear at the foot of a wall, where it is not the height [m]
+      real(wp) :: shear_span = unset
       integer :: n = unset_integer
       !> Bars that hoops hold, and whether the core of a rectangle is round
       integer :: restrained = unset_integer
@@ -193,6 +195,8 @@ contains
                  'a fixed top', optional=.true.)
       call v%key('axial_load', self%axial_load, 'N', any_number, &
                  'axial load that the springs were drawn for, compression positive', optional=.true.)
+      call v%key('shear_span', self%shear_span, 'm', above_zero, &
+                 'of a wall: moment over shear at its foot; without it the height', optional=.true.)
       call v%key('n', self%n, '', bound_type(2.0_wp, real(most_bodies, wp)), 'bodies of that height', &
                  optional=.true.)
       call v%key('restrained', self%restrained, '', one_or_more, &
@@ -287,7 +291,9 @@ contains
       if (self%hoops > 1) call messages%add('ties: there is a spiral too; give one of them')
       do i = 1, size(self%curtains)
          call self%curtains(i)%check('curtain', messages)
-         if (self%section%shape_name /= 'wall') call messages%add("curtain: it is for shape = 'wall'; remove it")
+         if (self%section%shape_name /= 'wall') then
+            call messages%add("curtain: it is for shape = 'wall'; remove it")
+         end if
          if (find_steel(self%section, self%curtains(i)%steel) == 0) then
             call messages%add('curtain: steel is not one of the steels of the section')
          end if

@@ -130,8 +130,8 @@ contains
    end subroutine cut_strips
 
    !> Strips of a hinge: centroid [m] and area [m2] of the core, then of the cover, a row of four for each.
-   !> Edges of boundaries of a wall that have hoops or wings are edges of strips. Without a core, or a cover, the centroid is the
-   !> middle of the strip.
+   !> Edges of boundaries of a wall that have hoops or wings are edges of strips. Without a core, or a cover,
+   !> the centroid is the middle of the strip.
    pure function strip_centroids(section, count) result(rows)
       type(section_type), intent(in) :: section
       !> Number of strips of equal height, before those edges cut them

@@ -7,7 +7,8 @@ module rbs_section_section_build
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete
-   use rbs_section_confinement, only: confinement_of, form_of_diagram, hooped_core, no_ties, ties, transverse_type
+   use rbs_section_confinement, only: confinement_of, form_of_diagram, hooped_core, no_ties, ties, &
+                                      transverse_type
    use rbs_section_cross_section, only: enclose_core, hooped_core_of, section_type, cut_strips, side_of
    use rbs_section_events, only: point_type
    use rbs_section_section_record, only: find_steel, section_record, side_names
@@ -112,7 +113,8 @@ contains
                   if (is_given(given%thickness)) section%shape%end_width(side) = given%thickness
                   if (.not. is_given(given%hoop_diameter)) cycle
                   section%boundary(side) = transverse_type(ties, given%hoop_diameter, given%hoop_spacing, &
-                     given%legs_along, given%legs_across, record%steels(find_steel(record, given%steel))%law())
+                                                           given%legs_along, given%legs_across)
+                  section%boundary(side)%steel = record%steels(find_steel(record, given%steel))%law()
                end do
             end associate
          end do

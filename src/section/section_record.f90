@@ -124,8 +124,8 @@ contains
       call v%key('length', self%length, 'm', above_zero, 'length of the boundary element along the wall')
       call v%key('thickness', self%thickness, 'm', above_zero, &
                  'its thickness; without it that of the web', optional=.true.)
-      call v%key('bar_diameter', self%bar_diameter, 'm', bar_size, 'diameter of its bars, where some are rows', &
-                 optional=.true.)
+      call v%key('bar_diameter', self%bar_diameter, 'm', bar_size, &
+                 'diameter of its bars, where some are rows', optional=.true.)
       call v%key('hoop_diameter', self%hoop_diameter, 'm', bar_size, &
                  'diameter of its hoops; without it there are none', optional=.true.)
       call v%key('hoop_spacing', self%hoop_spacing, 'm', spacings, 'distance between the hoops', &
@@ -203,8 +203,10 @@ contains
             end if
          end associate
       end do
-      if (mod(ends, 10) > 1 .or. ends > 11) call messages%add("boundary: an end of the wall has two; "// &
-         "give side = 'both' once, or 'start' and 'end'")
+      if (mod(ends, 10) > 1 .or. ends > 11) then
+         call messages%add("boundary: an end of the wall has two; give side = 'both' once, or "// &
+                           "'start' and 'end'")
+      end if
    end subroutine check_boundaries
 
    !> The lists of the bars have one length, and every steel is there.

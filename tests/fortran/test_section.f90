@@ -119,10 +119,12 @@ contains
       k_e = (1.0_wp - (2.0_wp*0.28_wp**2 + 4.0_wp*0.18_wp**2)/(6.0_wp*core))*(1.0_wp - 0.1_wp/0.66_wp)* &
             (1.0_wp - 0.1_wp/0.86_wp)/(1.0_wp - 2.0e-3_wp/core)
       rho = 0.25_wp*pi*1.0e-4_wp/0.11_wp*(2.0_wp/0.33_wp + 3.0_wp/0.43_wp)
-      call check_close(error, [section%confinement(1)%effectiveness, section%confinement(1)%ratio, &
-                               section%confinement(1)%stress], [k_e, rho, 0.5_wp*k_e*rho*400.0e6_wp], 1.0e-12_wp, 0.0_wp, 'ties: k_e, rho_s, f_l')
-      call check_close(error, section%core(1)%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core(1)%fc, &
-                       1.0e-12_wp, 0.0_wp, 'eps_cu')
+      associate (found => section%confinement(1), law => section%core(1))
+         call check_close(error, [found%effectiveness, found%ratio, found%stress], &
+                          [k_e, rho, 0.5_wp*k_e*rho*400.0e6_wp], 1.0e-12_wp, 0.0_wp, 'ties: k_e, rho_s, f_l')
+         call check_close(error, law%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/law%fc, &
+                          1.0e-12_wp, 0.0_wp, 'eps_cu')
+      end associate
    end subroutine confinement
 
    !> Linear concrete without tension: x = sqrt(2 N/(E b phi)), M = N (h/2 - x/3).

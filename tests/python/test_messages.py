@@ -81,6 +81,12 @@ ROUND = rbsdem.CircularSection(
     1.0, rbsdem.Concrete(30e6), layout=rbsdem.Layout(16, 0.016, STEEL), cover=0.03, wall=0.2,
     spiral=rbsdem.Spiral(0.01, 0.1, STEEL), inner_layout=rbsdem.Layout(16, 0.016, STEEL),
 )  # fmt: skip
+WALL = rbsdem.WallSection(
+    2.0, 0.2, rbsdem.Concrete(30e6),
+    boundary=rbsdem.Boundary(0.3, [(0.05, 1e-3, STEEL)], rbsdem.Hoops(0.01, 0.1, STEEL)),
+    vertical=rbsdem.Curtain(0.01, 0.2, STEEL), horizontal=rbsdem.Curtain(0.01, 0.2, STEEL),
+)  # fmt: skip
+DRAWN_OF = {"spiral": ROUND, "inner_layout": ROUND, "boundary": WALL, "curtain": WALL}
 RECORD = motions.synthetic(1)[0]
 LOADING = "&loading drive = 'displacement', amplitudes = 0.001 /\n"
 DRAWN = rbsdem.section.column(SECTION, 1.6, axial_load=744e3).to_namelist() + LOADING
@@ -412,8 +418,8 @@ def test_a_key_refuses_what_it_cannot_take(folder, case_text, group):
         text = case_text(**DYNAMIC)
     elif group in ("layer_spring", "layers"):
         text = case_text(**LAYERED, layer_spring=LAYER_SPRINGS)
-    elif group in ("spiral", "inner_layout"):
-        text = rbsdem.section.column(ROUND, 3.0, axial_load=1e6).to_namelist() + LOADING
+    elif group in DRAWN_OF:
+        text = rbsdem.section.column(DRAWN_OF[group], 3.0, axial_load=1e6).to_namelist() + LOADING
     elif f"&{group} " not in text and f"&{group} " in FRAMED + LOSS:
         text = FRAMED + LOSS * (group == "loss") + LOADING
     elif f"&{group} " not in text and f"&{group} " in DRAWN:

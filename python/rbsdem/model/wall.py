@@ -1,4 +1,4 @@
-"""Walls as drawn: boundary elements with bars and hoops at the ends, a mesh of bars between them."""
+"""Walls as drawn: boundary elements with bars and hoops at the ends, meshes between them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -101,9 +101,7 @@ class Curtain:
 
     def _group(self, direction: str, steel: int) -> _core.Statement:
         values = {"diameter": self.diameter, "spacing": self.spacing, "faces": self.faces}
-        return _core.group(
-            "curtain", {"direction": direction, **values, "steel": steel}
-        )
+        return _core.group("curtain", {"direction": direction, **values, "steel": steel})
 
 
 @dataclass(frozen=True)
@@ -148,6 +146,8 @@ class Boundary:
                 f"boundary: bars beyond its length: x = {beyond:g} m in {self.length:g} m; x is "
                 "measured from the end face of the wall"
             )
+        # To the nanometre, so that a case file gives them back to the last bit.
+        bars = tuple((round(x, 9), area, steel) for x, area, steel in bars)
         object.__setattr__(self, "bars", bars)
         if given(self.bar_diameter) is None:
             areas = [area for _, area, _ in bars]
@@ -157,7 +157,9 @@ class Boundary:
     @property
     def confines(self) -> bool:
         """Whether its hoops are close enough to hold bars and concrete."""
-        return self.hoops is not None and self.hoops.spacing <= _FARTHEST * float(self.bar_diameter or 0.0)
+        return self.hoops is not None and self.hoops.spacing <= _FARTHEST * float(
+            self.bar_diameter or 0.0
+        )
 
     def _group(self, side: str, numbers: dict[Steel, int], *, drawn: bool) -> _core.Statement:
         """Return its keys; hoops that do not confine are part of a drawing alone."""
@@ -220,10 +222,10 @@ class WallSection(Section):
     hoops: ClassVar[str] = "hoops in its boundary elements"
     solid: ClassVar[str] = "wall"
     #: As other sections have them; the bars of a wall are those of boundaries and meshes.
-    layout: ClassVar[Layout | None] = None
-    inner_layout: ClassVar[Layout | None] = None
-    wall: ClassVar[float | None] = None
-    strips: ClassVar[int] = 400
+    layout: ClassVar[Layout | None] = None  # type: ignore[misc]
+    inner_layout: ClassVar[Layout | None] = None  # type: ignore[misc]
+    wall: ClassVar[float | None] = None  # type: ignore[misc]
+    strips: ClassVar[int] = 400  # type: ignore[misc]
 
     length: float
     thickness: float
@@ -241,7 +243,9 @@ class WallSection(Section):
         if isinstance(self.boundary, tuple) and (
             len(self.boundary) != 2 or not all(isinstance(b, Boundary) for b in self.boundary)
         ):
-            raise InputError("wall: boundary must be a Boundary, or two of them, at y < 0 and y > 0")
+            raise InputError(
+                "wall: boundary must be a Boundary, or two of them, at y < 0 and y > 0"
+            )
         diameters = [float(end.bar_diameter or 0.0) for end in self.ends if end]
         mesh = self.vertical.diameter if self.vertical else None
         self._set("bar_diameter", max([*diameters, 0.0]) or mesh)
@@ -259,14 +263,16 @@ class WallSection(Section):
         found: list[tuple[float, float, Steel, int]] = []
         lengths = [end.length if end else 0.0 for end in self.ends]
         for end, sign in zip(self.ends, (-1.0, 1.0), strict=True):
-            for x, area, steel in end.bars if end else ():
+            if end is None:
+                continue
+            for x, area, steel in end.bars:
                 bar = 0.25 * math.pi * float(end.bar_diameter or 0.0) ** 2
                 found.append((sign * (half - x), area, steel, max(1, round(area / bar))))
         if self.vertical is None:
             return found
         clear, middle = self.length - sum(lengths), 0.5 * (lengths[0] - lengths[1])
         number = round(clear / self.vertical.spacing)
-        if number < 1:
+        if number < 1 and clear >= 0.0:
             raise InputError(
                 "curtain: no vertical bars between the boundaries; give vertical=None if there are "
                 "none"
@@ -278,7 +284,9 @@ class WallSection(Section):
 
     def _groups(self, *, drawn: bool) -> _core.Statement:
         """Return the wall as groups: as it was drawn, or with all bars and with ties for shear."""
-        ends: list[tuple[str, Boundary | None]] = list(zip(("start", "end"), self.ends, strict=True))
+        ends: list[tuple[str, Boundary | None]] = list(
+            zip(("start", "end"), self.ends, strict=True)
+        )
         if not isinstance(self.boundary, tuple):
             ends = [("both", self.boundary)]
         meshes = {"vertical": self.vertical, "horizontal": self.horizontal}
@@ -334,7 +342,7 @@ class WallSection(Section):
     def mirrored(self) -> Self:
         """The wall the other way round: y > 0 is what was y < 0. Itself where that is the same."""
         first, last = self.ends
-        return self if first == last else replace(self, boundary=(last, first))
+        return self if first == last else replace(self, boundary=(last, first))  # type: ignore[arg-type]
 
     @property
     def hooped(self) -> tuple[float, float]:
@@ -351,7 +359,9 @@ class WallSection(Section):
     def ties(self) -> Ties | None:
         """The horizontal bars, which carry shear; they confine nothing."""
         mesh = self.horizontal
-        return mesh and Ties(mesh.diameter, mesh.spacing, mesh.steel, float(mesh.faces))
+        if mesh is None:
+            return None
+        return Ties(mesh.diameter, mesh.spacing, mesh.steel, float(mesh.faces))
 
     @property
     def width(self) -> float:
@@ -376,7 +386,8 @@ class WallSection(Section):
     @property
     def single_bars(self) -> list[tuple[float, float]]:
         """The y and the diameter of every bar [m]."""
-        return list(self._single)
+        single: list[tuple[float, float]] = self.__dict__["_single"]
+        return list(single)
 
     def _thicker(self) -> list[tuple[float, float]]:
         """Return length and thickness of what is at the ends y < 0 and y > 0 [m]."""
@@ -404,9 +415,12 @@ class WallSection(Section):
         """Return the corners of the concrete, x and y [m]."""
         (near, first), (far, last) = self._thicker()
         half, web = 0.5 * self.length, 0.5 * self.thickness
-        right = [(0.5 * last, half), (0.5 * last, half - far), (web, half - far)]
-        right += [(web, near - half), (0.5 * first, near - half), (0.5 * first, -half)]
-        side = np.array([point for i, point in enumerate(right) if point not in right[:i]])
+        right = [(0.5 * last, half)]
+        if last > self.thickness:
+            right += [(0.5 * last, half - far), (web, half - far)]
+        if first > self.thickness:
+            right += [(web, near - half), (0.5 * first, near - half)]
+        side = np.array([*right, (0.5 * first, -half)])
         return np.vstack([side, side[::-1] * [-1, 1]])
 
     def void(self, distance: float = 0.0) -> Array:

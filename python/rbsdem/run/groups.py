@@ -12,8 +12,8 @@ from rbsdem.model.column import SPRING_GROUPS, Column, Damping
 from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
 from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
-from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
+from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
 from rbsdem.section.building import Building, Frame
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
@@ -28,6 +28,7 @@ SHAPES: dict[str, type[Section]] = {
     "hollow_rectangle": RectangularSection,
     "hollow_circle": CircularSection,
     "tee": TeeSection,
+    "wall": WallSection,
 }
 
 #: Keys of the location of a spring.
@@ -159,7 +160,7 @@ def _wall(groups: Groups, sizes: dict[str, Any], steels: Mapping[int | None, Ste
                 given["hoop_diameter"], given["hoop_spacing"], steels[given["steel"]], **legs
             )
         sign = -1.0 if side == "start" else 1.0
-        own = [(half - sign * y, a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0]
+        own = [(round(half - sign * y, 9), a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0]
         thick = {name: given.get(name) for name in ("thickness", "bar_diameter")}
         ends[side] = Boundary(given["length"], own, hoops, **thick)
     meshes: dict[str, Curtain | None] = dict.fromkeys(("vertical", "horizontal"))

@@ -1,8 +1,8 @@
 """Results that follow from the drawing of a section: diagrams, strengths, springs, its column.
 
 Most functions take a `rbsdem.RectangularSection` or `rbsdem.CircularSection` first, or a
-`rbsdem.frames.TeeSection`. Strains and axial loads are positive in compression, y is positive to
-the face that a positive curvature puts in tension.
+`rbsdem.frames.TeeSection` or a `rbsdem.WallSection`. Strains and axial loads are positive in
+compression, y is positive to the face that a positive curvature puts in tension.
 """
 
 from rbsdem.section.columns import column as column
@@ -19,3 +19,5 @@ from rbsdem.section.parameters import parameters as parameters
 from rbsdem.section.shear import shear_diagram as shear_diagram
 from rbsdem.section.strength import interaction as interaction
 from rbsdem.section.strength import shear_strength as shear_strength
+from rbsdem.section.walls import wall as wall
+from rbsdem.section.walls import wall_members as wall_members

@@ -12,6 +12,7 @@ from rbsdem.model.frame import FrameMember
 from rbsdem.model.materials import CONCRETE_DENSITY
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Spring, Takeda, unchecked
+from rbsdem.model.wall import WallSection
 from rbsdem.section.curvature import axial_load_note, column_length
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper import springs
@@ -79,6 +80,7 @@ def column(
     round_core: bool = False,
     top: Top = "free",
     footing: Footing | None = None,
+    shear_span: float | None = None,
 ) -> LayeredColumn: ...
 @overload
 def column(
@@ -110,6 +112,7 @@ def column(
     round_core: bool = False,
     top: Top = "free",
     footing: Footing | None = None,
+    shear_span: float | None = None,
 ) -> Column:
     """Return the column with this section, with second-order effects of the axial load.
 
@@ -151,6 +154,9 @@ def column(
         each half.
     footing : Footing, optional
         A footing on springs that the column stands on.
+    shear_span : float, optional
+        Moment over shear at the foot of a wall, where it is not the height, see
+        `rbsdem.section.wall` [m].
 
     Returns
     -------
@@ -201,13 +207,15 @@ def column(
     }
     made: Column
     if model == "paper":
-        given = {"model_parameters": model_parameters, "restrained": restrained}
+        given: dict[str, Any] = {"model_parameters": model_parameters, "restrained": restrained}
+        given |= {"shear_span": shear_span}
         for name, value in (given | {"round_core": round_core or None}).items():
             if value is not None:
                 raise InputError(f"{name} is for model = 'layered'; remove it")
         made = _paper(section, height, load, 1 if n is None else n, common)
     else:
-        made = _layered(section, height, load, n, model_parameters, restrained, round_core, common)
+        hoops = restrained, round_core
+        made = _layered(section, height, load, n, model_parameters, hoops, shear_span, common)
     if top == "fixed":
         made = made.double_curvature()
     return made if footing is None else replace(made, footing=footing)
@@ -262,6 +270,10 @@ def member(
     halves = tuple(section) if isinstance(section, (tuple, list)) else (section, section)
     if len(halves) != 2:
         raise InputError(f"member: {len(halves)} sections; give one, or one for each half")
+    if any(isinstance(one, WallSection) for one in halves):
+        raise InputError(
+            "member: a wall in a frame has springs of its own M/V; use rbsdem.section.wall_members"
+        )
     if model_parameters is None and not axial_load:
         model_parameters = parameters().with_values(**_BARS_OF_BEAMS)
     length = column_length(length, "length")
@@ -337,14 +349,14 @@ def _layered(
     axial_load: float,
     n: int | None,
     model_parameters: ModelParameters | None,
-    restrained: int | None,
-    round_core: bool,
+    hoops: tuple[int | None, bool],
+    shear_span: float | None,
     common: dict[str, Any],
 ) -> LayeredColumn:
     if n == 1:
         raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
     hinge = section, height, axial_load, n or 2
-    drawing = LayeredModel(*hinge, _known(model_parameters), restrained, round_core)
+    drawing = LayeredModel(*hinge, _known(model_parameters), *hoops, shear_span)
     if model_parameters is not None and model_parameters.version == VERSION:
         # Those of another version are meant for all columns: what a column limits is limited.
         drawing.check(model_parameters.own)

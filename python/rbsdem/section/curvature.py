@@ -39,6 +39,17 @@ RANGE: dict[str, tuple[float, float, float, str]] = {
 Of nearly all of them: 8 of 285 have a shorter shear span, 3 a larger depth and 11 fewer ties.
 """
 
+RANGE_OF_WALLS: dict[str, tuple[float, float, float, str]] = {
+    "axial load ratio": (0.0, 0.35, 1.0, ""),
+    "concrete strength": (15e6, 100e6, 1e6, " MPa"),
+    "length over thickness": (4.0, 25.0, 1.0, ""),
+    "shear span over length": (0.33, 3.05, 1.0, ""),
+}
+"""Range of the walls that the shear relation of walls and their bands stand on, likewise."""
+
+#: Clear height over thickness, beyond which a wall may buckle out of its plane.
+_SLENDER = 20.0
+
 #: A value on an end of a range may be off it by this share.
 _SLACK = 1e-9
 
@@ -170,6 +181,8 @@ def range_warnings(section: Section, height: float, axial_load: float) -> tuple[
     tuple of str
         A remark for each property that is outside; empty if there is none.
     """
+    if section.shape == "wall":
+        return _wall_warnings(section, height, axial_load)
     found = {
         "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
         "concrete strength": section.concrete.fc,
@@ -191,13 +204,38 @@ def range_warnings(section: Section, height: float, axial_load: float) -> tuple[
         remarks.append("the section has a flange; those of the tests had none")
     if section.hollow:
         remarks.append("the section is hollow; those of the tests were solid")
+    return (*remarks, *_outside(found, RANGE, "the tests that the model was fitted to"))
+
+
+def _outside(
+    found: dict[str, float], ranges: dict[str, tuple[float, float, float, str]], what: str
+) -> list[str]:
+    """Return a remark for each value outside its range."""
+    remarks = []
     for name, value in found.items():
-        low, high, unit, label = RANGE[name]
+        low, high, unit, label = ranges[name]
         if not low * (1 - _SLACK) <= value <= high * (1 + _SLACK):
             remarks.append(
                 f"{name} = {value / unit:.3g}{label} is outside {low / unit:g} to "
-                f"{high / unit:g}{label}, the range of the tests that the model was fitted to"
+                f"{high / unit:g}{label}, the range of {what}"
             )
+    return remarks
+
+
+def _wall_warnings(section: Section, span: float, axial_load: float) -> tuple[str, ...]:
+    found = {
+        "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
+        "concrete strength": section.concrete.fc,
+        "length over thickness": section.depth / section.width,
+        "shear span over length": span / section.depth,
+    }
+    remarks = _outside(found, RANGE_OF_WALLS, "the tests of walls")
+    if section.depth > RANGE_OF_WALLS["length over thickness"][1] * section.width:
+        remarks.append("the wall may buckle out of its plane, which is not in the model")
+    if section.ties is None:
+        remarks.append("the wall has no horizontal bars")
+    if section.outline().shape[0] > 4:
+        remarks.append("the wall has flanges or barbells; those of the tests were rectangular")
     return tuple(remarks)
 
 

@@ -72,6 +72,9 @@ class LayeredModel:
         Parameters of the model with their version.
     restrained, round_core
         As for `rbsdem.section.column`.
+    shear_span : float, optional
+        Moment over shear at the foot, for which springs of a wall are made, where it is not the
+        height [m].
     """
 
     section: Section
@@ -81,18 +84,24 @@ class LayeredModel:
     parameters: ModelParameters
     restrained: int | None = None
     round_core: bool = False
+    shear_span: float | None = None
+
+    @property
+    def span(self) -> float:
+        """Moment over shear at the foot [m]."""
+        return self.shear_span or self.height
 
     @cached_property
     def joint(self) -> HingeJoint:
         """The hinge at the foot."""
-        hinge = self.section, self.height, self.axial_load
+        hinge = self.section, self.span, self.axial_load
         hoops: Any = {"restrained": self.restrained, "round_core": self.round_core}
         return hinge_joint(*hinge, self.parameters, **hoops)
 
     @cached_property
     def shear(self) -> tuple[Pinching, dict[str, tuple[float, float]]]:
         """The shear spring of the foot, and the limits of the parameters that make it."""
-        hinge, joint = (self.section, self.height, self.axial_load), self.joint
+        hinge, joint = (self.section, self.span, self.axial_load), self.joint
         return shear_spring(*hinge, joint.shear_stiffness, self.parameters, joint)
 
     @cached_property
@@ -106,6 +115,7 @@ class LayeredModel:
             "version": _core.Text(self.parameters.version),
             "height": self.height,
             "axial_load": self.axial_load,
+            "shear_span": self.shear_span,
             "n": self.n,
             "restrained": self.restrained,
             "round_core": self.round_core or None,
@@ -174,20 +184,22 @@ class LayeredModel:
         # Flexible as the continuous column, whatever n is.
         stiffness = joint.flexural_stiffness / part * lumping(n)
         rigid = unchecked(Elastic, k=1e3 * joint.shear_stiffness / self.height)
+        slips = part_of_height(self.shear[0], self.height / self.span)
         return {
-            "shear": (self.shear[0], *[rigid] * (n - 1)),
-            "flexure": (joint.spring, *(self._above(stiffness, i) for i in range(n - 1))),
+            "shear": (slips, *[rigid] * (n - 1)),
+            "flexure": (joint.spring, *(self.above(stiffness, n - 1 - i) for i in range(n - 1))),
             "lengths": lengths,
             "model": f"layered {self.parameters.label}",
         }
 
-    def _above(self, stiffness: float, number: int) -> Spring:
-        """Return the spring of a joint above the hinge, counted from below.
+    def above(self, stiffness: float, low: float, high: float | None = None) -> Spring:
+        """Return the spring of a joint above the hinge.
 
-        The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and stays below
-        yield. From a to b below the top its curvature gains in proportion to what the moment is
-        above that; where all of the part has cracked, the joint in its middle turns as much if it
-        cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one further
+        It is that of the part from `low` to `high` below the point without moment; by default of
+        one unit. The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and
+        stays below yield. From a to b below the top its curvature gains in proportion to what the
+        moment is above that; where all of the part has cracked, the joint in its middle turns as
+        much if it cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one further
         from the centroid counts for both.
         """
         cracked = self.parameters.cracked_above
@@ -197,8 +209,7 @@ class LayeredModel:
         tensile = 0.6e6 * math.sqrt(section.concrete.fc / 1e6)
         # Under tension the least moment keeps the lines of the spring apart.
         stress = max(tensile + self.axial_load / section.gross_area, 0.1 * tensile)
-        low = self.n - 1 - number
-        high = low - 1
+        high = low - 1 if high is None else high
         share = 0.75 * (low + high) ** 2 / (low**2 + low * high + high**2)
         m_c = share * stress * section.inertia / (0.5 * section.depth + abs(section.centroid))
         d_c, k_y = m_c / stiffness, cracked * stiffness
@@ -206,6 +217,18 @@ class LayeredModel:
         most = 2.0 * max(self.joint.yield_moment, m_c)
         first: Any = {"k_c": stiffness, "d_c": d_c, "k_y": k_y, "d_y": d_c + (most - m_c) / k_y}
         return unchecked(Takeda, **first, k_u=0.9 * k_y, b0=0.0)
+
+
+def part_of_height(spring: Pinching, share: float) -> Pinching:
+    """Return the shear spring of a part of the height that one was made for, or of more than it.
+
+    All but the fall of its force is in proportion: the crack that fails is within one storey.
+    """
+    return (
+        spring
+        if share == 1.0
+        else replace(spring.scaled(1.0 / share), d_pc=spring.d_pc, d_pc_neg=spring.d_pc_neg)
+    )
 
 
 #: Bounds of factors on several parameters.
@@ -382,7 +405,7 @@ class LayeredColumn(Column):
     def warnings(self) -> tuple[str, ...]:
         """Where the column is outside the range of the tests that the model was fitted to."""
         # The drawing knows the shear span, whatever the ends of the column are.
-        return range_warnings(self._drawing.section, self._drawing.height, self.axial_load)
+        return range_warnings(self._drawing.section, self._drawing.span, self.axial_load)
 
     @property
     def replaced(self) -> tuple[str, ...]:

@@ -486,7 +486,8 @@ def shear_spring(
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
         (2004), which is that of a principal tension; then has `cracked_shear_stiffness`; yields
-        near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`; loses its force
+        near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`, in a wall with
+        an arch from two depths on and with the strut of the axial load; loses its force
         by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
         has a negative side of its own, that of the section upside down.
     dict of str to (float, float)
@@ -566,8 +567,12 @@ def _side(
 ) -> _Side:
     """Return the spring where y > 0 is in tension."""
     sizes = shear_sizes(section)
-    arch = arch_factor(section, length, axial_load)
-    by_theory = shear_strength_mcft(section, length, axial_load, arch=arch)
+    if section.shape == "wall":
+        arch = arch_factor(section, length, 0.0, begins=given.shear_wall_arch)
+        by_theory = given.shear_wall_strut * axial_strut(section, length, axial_load)
+    else:
+        arch, by_theory = arch_factor(section, length, axial_load), 0.0
+    by_theory += shear_strength_mcft(section, length, axial_load, arch=arch)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     least = 1e-4 * sizes.fc * sizes.gross_area
     f_y = max(given.shear_strength * by_theory, least)

@@ -476,7 +476,7 @@ def shear_sizes(section: Section) -> ShearSizes:
             core = depth - 2.0 * section.cover - ties.diameter
             held = area, ties.spacing, ties.steel.fy, core
         # Wings of a flange carry no shear along the depth.
-        whole = width * depth if section.shape == "tee" else section.gross_area
+        whole = width * depth if section.shape in ("tee", "wall") else section.gross_area
         steel = whole, section.tension_steel
         known["_shear_sizes"] = ShearSizes(fc, width, depth, section.effective_depth, *steel, *held)
     sizes: ShearSizes = known["_shear_sizes"]
@@ -579,7 +579,9 @@ def _least_ties(sizes: ShearSizes) -> float:
     return 0.06 * min(math.sqrt(sizes.fc / _MPA), 8.0) * _MPA / sizes.tie_yield
 
 
-def arch_factor(section: Section, length: float, axial_load: float) -> float:
+def arch_factor(
+    section: Section, length: float, axial_load: float, *, begins: float = 4.0
+) -> float:
     """Return by how much the concrete of a squat column carries more than a theory of sections has.
 
     1 + (k - 1) k_n k_t with k = 4 d/a from 1 to 4: part of the force goes straight to the support
@@ -595,6 +597,8 @@ def arch_factor(section: Section, length: float, axial_load: float) -> float:
         Shear span a [m].
     axial_load : float
         Compression positive [N].
+    begins : float, optional
+        Shear span over d below which there is an arch, 4 above.
 
     Returns
     -------
@@ -608,7 +612,7 @@ def arch_factor(section: Section, length: float, axial_load: float) -> float:
     squat columns with axial load are as strong as by the theory of sections.
     """
     sizes = shear_sizes(section)
-    squat = min(max(4.0 * sizes.d / length, 1.0), 4.0)
+    squat = min(max(begins * sizes.d / length, 1.0), 4.0)
     free = min(max(1.0 - 2.0 * axial_load / (sizes.fc * sizes.gross_area), 0.0), 1.0)
     tied = min(sizes.tie_ratio / _least_ties(sizes), 1.0)
     return 1.0 + (squat - 1.0) * free * (_SPLITS + (1.0 - _SPLITS) * tied)

@@ -1,0 +1,222 @@
+"""Walls: their drawing, the joint of their zones, the members of a wall in a frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem import Boundary, Concrete, Curtain, Hoops, RectangularSection, Steel, WallSection
+from rbsdem.frames import FrameNode
+from rbsdem.section import hinge
+from rbsdem.section.parameters import parameters
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:the wall has flanges"),
+    pytest.mark.filterwarnings("ignore:frame. storeys has lengths"),
+]
+
+BARS, MESH = Steel(583e6, 747e6), Steel(485e6, 535e6)
+AREA = math.pi / 4 * 0.01**2
+ROWS = [(x, AREA, BARS) for x in (0.03, 0.03, 0.13, 0.13, 0.23, 0.23)]
+HOOPS = Hoops(0.006, 0.075, MESH)
+LOAD = 691e3
+
+
+def wall(boundary=None, **changes) -> WallSection:
+    """Return WSH2 of Dazio, Beyer and Bachmann (2009) with other values of some."""
+    given = {
+        "boundary": Boundary(0.26, ROWS, HOOPS) if boundary is None else boundary,
+        "vertical": Curtain(0.006, 0.126, MESH),
+        "horizontal": Curtain(0.006, 0.15, MESH),
+    }
+    return WallSection(2.0, 0.15, Concrete(40.5e6), **given | changes)
+
+
+UNLIKE = (Boundary(0.26, ROWS, HOOPS, thickness=0.4), Boundary(0.3, ROWS))
+
+
+def test_the_bars_of_the_mesh_fill_what_is_between_the_boundaries():
+    """1.48 m at 126 mm: 12 rows of two bars, each in the middle of its part."""
+    mesh = [bar for bar in wall().bars if bar[2] is MESH]
+    part = 1.48 / 12
+    assert [y for y, _, _ in mesh] == pytest.approx([-0.74 + (i + 0.5) * part for i in range(12)])
+    assert sum(a for _, a, _ in mesh) == pytest.approx(24 * math.pi / 4 * 0.006**2)
+    assert len(wall().single_bars) == 12 + 24
+    assert wall().bar_diameter == pytest.approx(0.01)
+
+
+def test_a_row_of_bars_may_be_one_entry():
+    rows = Boundary(0.26, [(x, 2 * AREA, BARS) for x in (0.03, 0.13, 0.23)], bar_diameter=0.01)
+    bars = [np.array(sorted(one.single_bars)) for one in (wall(rows), wall())]
+    assert bars[0] == pytest.approx(bars[1])
+
+
+def test_figures_of_a_barbell_by_hand():
+    """Web 0.15 x 2 m, ends of 0.4 x 0.26 m: their sum, and parallel axes."""
+    barbell = wall(Boundary(0.26, ROWS, HOOPS, thickness=0.4))
+    wing = 0.25 * 0.26
+    assert barbell.gross_area == pytest.approx(0.3 + 2 * wing, rel=1e-14)
+    inertia = 0.15 * 8 / 12 + 2 * (wing * 0.26**2 / 12 + wing * 0.87**2)
+    assert barbell.inertia == pytest.approx(inertia, rel=1e-14)
+    assert barbell.centroid == 0.0
+    assert barbell.shear_area == pytest.approx(5 / 6 * 0.3)
+    one = wall(UNLIKE)
+    assert one.centroid == pytest.approx(-wing * 0.87 / (0.3 + wing), rel=1e-14)
+    assert one.part(2.0) == pytest.approx((one.gross_area, one.gross_area * one.centroid))
+    x, y = one.outline().T
+    assert 0.5 * abs(x @ np.roll(y, 1) - y @ np.roll(x, 1)) == pytest.approx(one.gross_area)
+
+
+def test_a_wall_without_hoops_is_a_rectangle_with_its_bars():
+    """The same outline, bars and unconfined concrete: the same diagram and the same joint."""
+    plain = wall(Boundary(0.26, ROWS))
+    same = RectangularSection(0.15, 2.0, Concrete(40.5e6), bars=plain.bars, bar_diameter=0.01)
+    curvature = np.linspace(0.0, 0.02, 12)
+    moments = [rbsdem.section.moment_curvature(one, LOAD, curvature) for one in (plain, same)]
+    assert moments[0] == pytest.approx(moments[1], rel=1e-12)
+    joints = [hinge.hinge_joint(one, 4.56, LOAD, parameters()) for one in (plain, same)]
+    assert joints[0].spring == joints[1].spring
+    assert joints[0].flexural_stiffness == pytest.approx(joints[1].flexural_stiffness, rel=1e-12)
+    assert plain.confinement is None
+    with pytest.raises(rbsdem.InputError, match="hoops in its boundary elements"):
+        rbsdem.section.moment_curvature(plain, LOAD, 0.01, confined=True)
+
+
+def test_hoops_confine_the_boundary_alone():
+    """Mander, Priestley and Park (1988) by hand: the weaker direction, the arches between bars.
+
+    Core 104 mm x 234 mm between centre lines of the hoops; legs of 28.27 mm2 every 75 mm.
+    """
+    strips = hinge.strips_of(wall(), 10)
+    leg, core = math.pi / 4 * 0.006**2, 0.104 * 0.234
+    ratio = 2 * min(2 * leg / (0.075 * 0.104), 2 * leg / (0.075 * 0.234))
+    assert strips.hoop_pressure == pytest.approx([ratio * 485e6] * 2)
+    clear = 0.104 - 0.026, 0.234 - 0.026
+    arches = 2 * sum(gap**2 for gap in clear) / 6 / core
+    effective = (1 - arches) * (1 - 0.069 / 0.208) * (1 - 0.069 / 0.468) / (1 - 6 * AREA / core)
+    assert strips.confining_stress == pytest.approx([0.5 * effective * ratio * 485e6] * 2)
+    assert sum(strip.area for strip in strips.core) == pytest.approx(2 * core)
+    assert min(abs(strip.y) for strip in strips.core) > 0.74
+    total = sum(strip.area for strip in (*strips.core, *strips.cover))
+    assert total == pytest.approx(0.3, rel=1e-14)
+    far = wall(Boundary(0.26, ROWS, replace(HOOPS, spacing=0.17)))
+    assert hinge.strips_of(far, 10).confining_stress == (0.0, 0.0)
+
+
+def test_a_wall_turned_round_bends_to_the_other_side():
+    one = wall(UNLIKE)
+    turned = one.mirrored
+    assert (turned.ends, turned.mirrored) == (one.ends[::-1], one)
+    assert wall().symmetric
+    curvature = np.linspace(0.0, 0.02, 12)
+    for confined in (False, True):
+        moments = rbsdem.section.moment_curvature(one, LOAD, curvature, confined=confined)
+        others = rbsdem.section.moment_curvature(turned, LOAD, -curvature, confined=confined)
+        assert moments == pytest.approx(-others, abs=1e-9 * moments.max())
+    path = 0.02 * np.sin(np.linspace(0.0, 9.0, 60)) * np.linspace(0.0, 1.0, 60)
+    loops = [
+        rbsdem.cyclic(
+            rbsdem.section.wall(each, 4.56, axial_load=LOAD), displacement=side * 4.56 * path
+        ).force
+        for each, side in ((one, 1.0), (turned, -1.0))
+    ]
+    assert loops[0] == pytest.approx(-loops[1], abs=1e-9 * np.abs(loops[0]).max())
+
+
+@pytest.mark.parametrize("drawn", [wall(), wall(UNLIKE), wall(vertical=None), wall(Boundary(0.2))])
+def test_a_wall_comes_back_from_a_case_file(drawn, tmp_path):
+    column = rbsdem.section.wall(drawn, 4.56, axial_load=LOAD, shear_span=5.0)
+    loading = "&loading drive = 'displacement', values = 0.01 /\n"
+    file = tmp_path / "wall.nml"
+    file.write_text(column.to_namelist() + loading)
+    back = rbsdem.read_case(file).column
+    assert back.drawing.section == drawn
+    assert back == column
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"boundary": Boundary(1.2, ROWS)}, "boundary length 1.2 m is more than half of 2 m"),
+        ({"boundary": Boundary(0.26, ROWS, thickness=0.1)}, "must not be below that of the web"),
+        ({"boundary": Boundary(0.035, [], Hoops(0.01, 0.05, MESH), bar_diameter=0.01)}, "no core"),
+        ({"vertical": Curtain(0.006, 4.0, MESH)}, "no vertical bars between the boundaries"),
+        ({"boundary": (1, 2)}, "boundary must be a Boundary, or two of them"),
+    ],
+)
+def test_a_wall_is_refused(given, message):
+    with pytest.raises(rbsdem.InputError, match=message):
+        wall(**given)
+
+
+def test_parts_of_a_wall_are_refused():
+    with pytest.raises(rbsdem.InputError, match=r"bars beyond its length: x = 0.3 m in 0.26 m"):
+        Boundary(0.26, [(0.3, AREA, BARS)])
+    with pytest.raises(
+        rbsdem.InputError, match=r"more than the length, 0.1 m; draw it as a column"
+    ):
+        WallSection(0.1, 0.15, Concrete(40e6), vertical=None, horizontal=None)
+    with pytest.raises(rbsdem.InputError, match=r"use rbsdem.section.wall_members"):
+        rbsdem.section.member(wall(), 3.0)
+    with pytest.raises(rbsdem.InputError, match="WallSection"):
+        rbsdem.section.wall(RectangularSection(0.4, 0.4, Concrete(40e6)), 3.0, axial_load=0.0)
+
+
+def test_shear_strength_of_a_wall_by_hand():
+    """V_MCFT with the arch of walls, and the strut of the axial load, whole; times 1.02."""
+    for height in (0.8, 1.6, 2.4, 5.0):
+        spring = rbsdem.section.wall(wall(), height, axial_load=LOAD).joints("shear")[0]
+        d, n = wall().effective_depth, LOAD / (40.5e6 * 0.3)
+        ties = 2 * math.pi / 4 * 0.006**2 / (0.15 * 0.15)
+        least = 0.06 * math.sqrt(40.5) / 485
+        tied = 0.4 / 0.75 + (1 - 0.4 / 0.75) * min(ties / least, 1.0)
+        arch = 1 + (min(max(2 * d / height, 1.0), 4.0) - 1) * tied
+        strut = LOAD * 2.0 * (0.8 - 0.65 * n) / (2 * height)
+        by_theory = rbsdem.section.strength.shear_strength_mcft(wall(), height, LOAD, arch=arch)
+        assert spring.f_y == pytest.approx(1.02 * (by_theory + strut))
+
+
+def cut(section: WallSection, storeys: int, height: float = 4.56, **changes) -> rbsdem.Frame:
+    """Return the wall as a line of members of equal storeys, under its load at the top."""
+    given = {"axial_loads": LOAD, "shear_span": height} | changes
+    heights = [height / storeys] * storeys
+    kinds = rbsdem.section.wall_members(section, heights, **given)
+    top = FrameNode(f"N-1-{storeys}", load_y=-LOAD, push_x=1.0)
+    columns = {(1, i): kind for i, kind in enumerate(kinds, 1)}
+    return rbsdem.Frame(heights, columns=columns, nodes=[top], pattern="nodes")
+
+
+@pytest.mark.parametrize("section", [wall(), wall(UNLIKE)])
+def test_a_wall_that_is_cut_at_floors_is_as_strong(section):
+    """In one piece, as a column, and in 2, 4 and 8 storeys: 0.2 % in a push-over to 2 %."""
+    whole = replace(rbsdem.section.wall(section, 4.56, axial_load=LOAD), kinematics="small")
+    force = rbsdem.pushover(whole, drift=0.02).force.max()
+    first = rbsdem.pushover(cut(section, 1), drift=0.02)
+    # The second joint of the column slips a little, and the wall of the frame closes.
+    assert first.force.max() == pytest.approx(force, rel=1e-3)
+    for storeys in (2, 4, 8):
+        found = rbsdem.pushover(cut(section, storeys), drift=0.02).force.max()
+        assert found == pytest.approx(force, rel=2e-3)
+
+
+def test_a_squat_wall_that_is_cut_fails_in_shear_at_the_same_force():
+    forces = [
+        rbsdem.pushover(cut(wall(), storeys, 2.0), drift=0.02).force.max() for storeys in (1, 2, 4)
+    ]
+    assert forces == pytest.approx([forces[0]] * 3, rel=1e-5)
+    spring = rbsdem.section.wall(wall(), 2.0, axial_load=LOAD).joints("shear")[0]
+    assert spring.f_y < forces[0] < spring.f_cap
+
+
+def test_joints_stand_where_the_section_changes():
+    thin = wall(boundary=Boundary(0.2, ROWS[:2], HOOPS))
+    sections = [wall(), wall(), thin, thin]
+    kinds = rbsdem.section.wall_members(sections, [3.0] * 4, axial_loads=LOAD)
+    layered = [[s.rule == "layered" for _, s in kind.flexure] for kind in kinds]
+    assert [any(one) for one in layered] == [True, False, True, False]
+    kinds = rbsdem.section.wall_members(wall(), [3.0] * 4, axial_loads=LOAD, hinges="all")
+    assert all(any(s.rule == "layered" for _, s in kind.flexure) for kind in kinds)
