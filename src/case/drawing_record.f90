@@ -224,7 +224,7 @@ contains
       type(key_visitor), intent(inout) :: v
 
       call v%word('face', self%face, 'face of the row; those of one face follow each other inwards', &
-                  'top bottom side', required=.true.)
+                  'top bottom side both start end', required=.true.)
       call v%key('number', self%number, '', one_or_more, 'number of bars; at the side those of each side')
       call v%key('diameter', self%diameter, 'm', bar_size, 'their diameter')
       call v%key('clear', self%clear, 'm', not_negative, 'clear distance to the row before it; without '// &

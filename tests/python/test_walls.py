@@ -220,3 +220,15 @@ def test_joints_stand_where_the_section_changes():
     assert [any(one) for one in layered] == [True, False, True, False]
     kinds = rbsdem.section.wall_members(wall(), [3.0] * 4, axial_loads=LOAD, hinges="all")
     assert all(any(s.rule == "layered" for _, s in kind.flexure) for kind in kinds)
+
+
+def test_rows_of_bars_stand_between_the_hoops():
+    """Six bars of 10 mm in 0.26 m: rows of two from 20 + 6 + 5 mm on, the last within the hoop."""
+    rows = wall(Boundary(0.26, rbsdem.Bars(6, 0.010, BARS), HOOPS))
+    places = sorted({round(1.0 - y, 6) for y, _, steel in rows.bars if steel is BARS and y > 0})
+    assert places == [0.031, 0.14, 0.249]
+    spaced = [rbsdem.Bars(2, 0.010, BARS), rbsdem.Bars(2, 0.010, BARS, clear=0.05)]
+    near = wall(Boundary(0.26, spaced, HOOPS))
+    assert sorted({round(x, 6) for x, _, _ in near.boundary.bars}) == [0.031, 0.091]
+    with pytest.raises(rbsdem.InputError, match="the steel of its bars is missing"):
+        Boundary(0.26, rbsdem.Bars(6, 0.010))

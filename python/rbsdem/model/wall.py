@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,12 +16,14 @@ from rbsdem._types import Array, Self
 from rbsdem.errors import InputError
 from rbsdem.model.materials import (
     Bar,
+    Bars,
     Concrete,
     Layout,
     Steel,
     Ties,
     _check_bar,
     _check_positive,
+    rows_of_bars,
 )
 from rbsdem.model.shape import _NO_LINE, Section, _bar, _box, _in_rows
 
@@ -112,9 +114,11 @@ class Boundary:
     ----------
     length : float
         Along the wall, from its end face [m].
-    bars : sequence of (x, area, steel)
-        Bars one by one: distance from the end face [m], area [m2], `Steel`. A row of bars may be
-        one entry if `bar_diameter` is given.
+    bars : Bars, sequence of Bars, or sequence of (x, area, steel)
+        Rows of bars across the wall with their steel, the outer first: at equal distances from the
+        hoop at the end face to that at the web, or at those that the rows state (`clear`); one
+        `Bars` of more than two stands in rows of two. Or bars one by one: distance from the end
+        face [m], area [m2], `Steel`; a row of bars may be one entry if `bar_diameter` is given.
     hoops : Hoops, optional
         Hoops around these bars; without them, or with hoops more than 16 diameters of the bars
         apart, the concrete is not confined.
@@ -131,7 +135,7 @@ class Boundary:
     """
 
     length: float
-    bars: Sequence[Bar] = ()
+    bars: Bars | Sequence[Bars] | Sequence[Bar] = ()
     hoops: Hoops | None = None
     thickness: float | None = None
     bar_diameter: float | None = None
@@ -139,7 +143,17 @@ class Boundary:
     def __post_init__(self) -> None:
         _arguments.convert(self, "boundary")
         _check_positive(self, "boundary", length="m", thickness="m", bar_diameter="m")
-        bars = tuple(_bar(bar, number) for number, bar in enumerate(self.bars, 1))
+        if isinstance(self.bars, Bars):
+            row, two = self.bars, self.bars.number // 2
+            each = [2] * two + [1] * (row.number % 2)
+            rows = [replace(row, number=number) for number in each]
+            object.__setattr__(self, "bars", tuple(rows))
+        bars: Any = self.bars
+        if self._in_rows:
+            if any(row.steel is None for row in bars):
+                raise InputError("boundary: the steel of its bars is missing; give it with Bars")
+            return
+        bars = tuple(_bar(bar, number) for number, bar in enumerate(bars, 1))
         beyond = max((x for x, _, _ in bars), default=0.0)
         if beyond > self.length or any(x < 0.0 for x, _, _ in bars):
             raise InputError(
@@ -153,6 +167,37 @@ class Boundary:
             areas = [area for _, area, _ in bars]
             mean = sum(area**1.5 for area in areas) / max(sum(areas), 1e-12)
             object.__setattr__(self, "bar_diameter", Derived(math.sqrt(4.0 / math.pi) * mean))
+
+    @property
+    def _in_rows(self) -> bool:
+        rows: Any = self.bars
+        return bool(rows) and all(isinstance(row, Bars) for row in rows)
+
+    @property
+    def single(self) -> tuple[Bar, ...]:
+        """Its bars one by one; those of a wall know where they are."""
+        bars: Any = self.bars
+        return () if self._in_rows else tuple(bars)
+
+    def _laid(self, cover: float) -> Boundary:
+        """Return the boundary element with its rows as bars one by one."""
+        if not self._in_rows:
+            return self
+        rows: Any = self.bars
+        tie = self.hoops.diameter if self.hoops else 0.0
+        first = cover + tie + 0.5 * rows[0].diameter
+        last = max(self.length - tie - 0.5 * rows[-1].diameter, first)
+        places = np.linspace(first, last, len(rows)).tolist()
+        if len(rows) == 1:
+            places = [0.5 * (first + last)]
+        if any(row.clear is not None for row in rows):
+            # The face is at the end: x is how far it is from there.
+            found = rows_of_bars(rows, self.length, cover + tie, None)[1]
+            places = [self.length - place for place in found]
+        bars = [
+            (x, *bar[1:]) for x, row in zip(places, rows, strict=True) for bar in row.at(x, None)
+        ]
+        return replace(self, bars=bars)
 
     @property
     def confines(self) -> bool:
@@ -205,13 +250,12 @@ class WallSection(Section):
     Examples
     --------
     >>> s = Steel(583e6, 747e6)
-    >>> rows = [(0.03, 157e-6, s), (0.13, 157e-6, s), (0.23, 157e-6, s)]
     >>> mesh = Steel(485e6, 535e6)
     >>> wall = rbsdem.WallSection(
     ...     2.0,
     ...     0.15,
     ...     Concrete(40.5e6),
-    ...     boundary=rbsdem.Boundary(0.26, rows, rbsdem.Hoops(0.006, 0.075, mesh)),
+    ...     boundary=rbsdem.Boundary(0.26, Bars(6, 0.010, s), rbsdem.Hoops(0.006, 0.075, mesh)),
     ...     vertical=rbsdem.Curtain(0.006, 0.126, mesh),
     ...     horizontal=rbsdem.Curtain(0.006, 0.15, mesh),
     ... )
@@ -246,6 +290,9 @@ class WallSection(Section):
             raise InputError(
                 "wall: boundary must be a Boundary, or two of them, at y < 0 and y > 0"
             )
+        if self.boundary is not None:
+            laid = tuple(end._laid(self.cover) for end in self.ends if end)
+            self._set("boundary", laid if isinstance(self.boundary, tuple) else laid[0])
         diameters = [float(end.bar_diameter or 0.0) for end in self.ends if end]
         mesh = self.vertical.diameter if self.vertical else None
         self._set("bar_diameter", max([*diameters, 0.0]) or mesh)
@@ -265,7 +312,7 @@ class WallSection(Section):
         for end, sign in zip(self.ends, (-1.0, 1.0), strict=True):
             if end is None:
                 continue
-            for x, area, steel in end.bars:
+            for x, area, steel in end.single:
                 bar = 0.25 * math.pi * float(end.bar_diameter or 0.0) ** 2
                 found.append((sign * (half - x), area, steel, max(1, round(area / bar))))
         if self.vertical is None:
@@ -292,7 +339,7 @@ class WallSection(Section):
         meshes = {"vertical": self.vertical, "horizontal": self.horizontal}
         bars = self.bars
         if drawn:
-            bars = self.bars[: sum(len(end.bars) for end in self.ends if end)]
+            bars = self.bars[: sum(len(end.single) for end in self.ends if end)]
         steels = [steel for _, _, steel in bars]
         steels += [mesh.steel for mesh in meshes.values() if mesh]
         steels += [end.hoops.steel for _, end in ends if end and end.hoops]

@@ -160,7 +160,19 @@ def _wall(groups: Groups, sizes: dict[str, Any], steels: Mapping[int | None, Ste
                 given["hoop_diameter"], given["hoop_spacing"], steels[given["steel"]], **legs
             )
         sign = -1.0 if side == "start" else 1.0
-        own = [(round(half - sign * y, 9), a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0]
+        own: Any = [
+            (round(half - sign * y, 9), a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0
+        ]
+        laid = [one for one in groups.get("row", []) if one.get("face") == side]
+        if laid and own:
+            raise InputError("row: there are bars too; give one of them")
+        own = own or [
+            Bars(
+                **_core.typed("row", {k: v for k, v in one.items() if k != "face"})
+                | {"steel": steels[one["steel"]] if "steel" in one else next(iter(steels.values()))}
+            )
+            for one in laid
+        ]
         thick = {name: given.get(name) for name in ("thickness", "bar_diameter")}
         ends[side] = Boundary(given["length"], own, hoops, **thick)
     meshes: dict[str, Curtain | None] = dict.fromkeys(("vertical", "horizontal"))

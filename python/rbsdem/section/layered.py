@@ -199,8 +199,8 @@ class LayeredModel:
         one unit. The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and
         stays below yield. From a to b below the top its curvature gains in proportion to what the
         moment is above that; where all of the part has cracked, the joint in its middle turns as
-        much if it cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one further
-        from the centroid counts for both.
+        much if it cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one
+        further from the centroid counts for both.
         """
         cracked = self.parameters.cracked_above
         if not cracked > 0.0:
