@@ -9,7 +9,7 @@ module rbs_solve_static_corner
    use rbs_hysteresis_interaction_joints, only: update_branches
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_straight_motion, only: find_blocked
-   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, on_the_end
+   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, on_the_end, is_on_end
    implicit none
    private
 
@@ -22,23 +22,22 @@ module rbs_solve_static_corner
    !> of a structure without strength, as a share of its peak.
    real(wp), parameter :: at_rest = 1.0e-6_wp
 
-   !> Most springs whose ways are tried in all combinations, and most springs times combinations.
-   integer, parameter :: most_tried = 14, most_work = 200000
+   !> Efforts of the search for a way forward.
+   integer, parameter :: if_stable = 1, by_blocks = 2, to_the_end = 3
 
-   !> Most sets of gaps.
-   integer, parameter :: most_gaps = 2
-
-   !> Its multiples spread over the fractions, so that no two springs are alike.
-   real(wp), parameter :: golden = 0.6180339887498949_wp
+   !> Share by which rates differ that are not equal.
+   real(wp), parameter :: same_rate = 1.0e-9_wp
 
 contains
 
    !> Find the lines that lead on in a direction, and the rates on them.
    !>
-   !> Springs without room are put on the next line, all at once as long as this leaves fewer and fewer
-   !> without room, else the first one first: while the structure is stable this ends (Murty's least-index
-   !> rule; with blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596). Beyond the peak it may
-   !> cycle.
+   !> The way on which no spring turns back is the one of greatest force rate. If there is none, springs
+   !> without room are put on the next line, all at once as long as this leaves fewer and fewer without room,
+   !> else the first one first: while the structure is stable this ends (Murty's least-index rule; with
+   !> blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596), and there is no other way. A
+   !> structure that softens may have several ways: the fundamental one continues the rates before the corner,
+   !> see `follow_through`.
    subroutine turn_corner(path, direction, target, error)
       class(static_path), intent(inout) :: path
       integer, intent(in) :: direction
@@ -46,93 +45,99 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Springs blocked on their lines in their direction of motion, their number, and that with planes
       integer :: blocked(path%moving), springs_blocked, stopped
-      integer :: changes, fewest, left, combinations, i
-      logical :: found, may_pass
+      logical :: found, through, is_singular
 
       path%direction = 0
       path%changed = 0
-      may_pass = path%may_go_back
-      if (may_pass) may_pass = any(path%arrived /= 0)
-      if (may_pass) then
+      found = .false.
+      is_singular = .false.
+      through = path%may_go_back
+      if (through) through = any(path%arrived /= 0)
+      if (through) then
          path%rate_in = path%rate
          ! Before the first spring is changed: this is the corner.
          call path%springs%mark()
+         if (.not. path%goes_back) call search(if_stable)
+         if (.not. found) call go_through()
+      else
+         call search(to_the_end)
       end if
-      found = path%goes_back
-      if (found) then
-         call pass()
-         if (.not. found) call try_all_ways()
-         if (.not. found) call report_snap_back()
-         return
-      end if
-      fewest = huge(1)
-      left = patience
-      do changes = 1, 20 + min(10*path%moving, 1000 + path%moving)
-         call path%solve_line(direction, found)
-         if (.not. found) then
-            ! Some springs may unload, though there is no stiffness under the driven force: let them.
-            if (path%by_force .and. path%structure%tangent_numbers == 0 .and. &
-                any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
-               do i = 1, path%moving
-                  if (path%springs%unload_on_reversal(i) == -direction) call path%springs%leave(i, direction)
-               end do
-               cycle
-            end if
-            call pass()
-            if (found) return
-            if (path%structure%tangent_numbers > 0) call let_one_unload()
-            if (found) cycle
-            call report_no_line(path, target, error)
-            return
-         end if
-         call find_stopped()
-         if (path%springs%crushed_joint() > 0) return
-         if (stopped == 0) then
-            path%direction = direction
-            call path%springs%forget_mark()
-            return
-         end if
-         if (stopped < fewest) then
-            fewest = stopped
-            left = patience
-         else
-            left = left - 1
-         end if
-         if (left < 0 .and. may_pass) then
-            call pass()
-            if (found) return
-            ! Where the way was sought in vain the springs are on the lines of the corner again.
-            if (.not. may_pass) cycle
-         end if
-         call change_lines(left >= 0)
-      end do
-      call pass(always=.true.)
-      if (found) return
-      call try_all_ways()
-      if (found) return
-      if (path%by_force) then
+      call path%springs%forget_mark()
+      if (found .or. path%springs%crushed_joint() > 0) return
+      if (path%by_force .or. is_singular .or. is_spent(path)) then
          call report_no_line(path, target, error)
       else
-         call report_snap_back()
+         call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
+                          ': no choice of loading and unloading springs lets it go on or back; '// &
+                          trim(weakest_spring(path))//' has the least stiffness left. The path up to '// &
+                          'there is kept. Strength that is lost more slowly, or a response in time, goes on')
       end if
 
    contains
 
-      !> Follow the path through the corner, where something softens; once.
-      subroutine pass(always)
-         !> Whether it is the last resort
-         logical, intent(in), optional :: always
+      !> Take the way through the corner; if it leads back, one forward if there is one.
+      subroutine go_through()
+         logical :: back
 
-         found = .false.
-         if (.not. may_pass) return
-         if (.not. (present(always) .or. path%goes_back .or. path%structure%axially_loaded .or. &
-                    any(path%springs%k(:path%moving) < 0.0_wp))) return
-         may_pass = .false.
          call path%springs%restore()
-         call follow_through(path, direction, found)
-         if (.not. found) call path%springs%restore()
-         call path%springs%forget_mark()
-      end subroutine pass
+         call follow_through(path, found)
+         back = found .and. path%direction /= direction
+         if (.not. path%goes_back .and. (back .or. .not. found)) then
+            call path%springs%restore()
+            path%changed = 0
+            call search(merge(by_blocks, to_the_end, back))
+            if (found .or. .not. back) return
+            call path%springs%restore()
+            call follow_through(path, found)
+         end if
+         path%goes_back = back
+      end subroutine go_through
+
+      !> Search a way forward.
+      subroutine search(effort)
+         !> No more than whether it is the way of all springs, or the one of a stable structure; as long as
+         !> blocks of springs make progress; all there is
+         integer, intent(in) :: effort
+         integer :: fewest, left, changes, i
+
+         fewest = huge(1)
+         left = patience
+         do changes = 1, 20 + min(10*path%moving, 1000 + path%moving)
+            call path%solve_line(direction, found)
+            is_singular = .not. found
+            if (.not. found) then
+               if (effort < to_the_end) return
+               ! Some springs may unload, though there is no stiffness under the driven force: let them.
+               if (path%by_force .and. path%structure%tangent_numbers == 0 .and. &
+                   any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
+                  do i = 1, path%moving
+                     if (path%springs%unload_on_reversal(i) /= -direction) cycle
+                     call path%springs%leave(i, direction)
+                  end do
+                  cycle
+               end if
+               if (path%structure%tangent_numbers > 0) call let_one_unload()
+               if (found) cycle
+               return
+            end if
+            call find_stopped()
+            if (path%springs%crushed_joint() > 0) return
+            found = stopped == 0
+            if (found) then
+               path%direction = direction
+               return
+            end if
+            if (effort == if_stable .and. changes == 1 .and. .not. path%is_stable) return
+            if (stopped < fewest) then
+               fewest = stopped
+               left = patience
+            else
+               left = left - 1
+            end if
+            if (left < 0 .and. effort < to_the_end) return
+            call change_lines(left >= 0)
+         end do
+      end subroutine search
 
       !> Springs that yield at once may leave a node free to turn, though one of them holds it: the one that
       !> has come last and was changed least unloads. Those that should not are put back.
@@ -147,18 +152,6 @@ contains
          path%changed(i) = path%changed(i) + 1
          call path%springs%leave(i, -path%springs%unload_on_reversal(i))
       end subroutine let_one_unload
-
-      subroutine report_snap_back()
-         if (is_spent(path)) then
-            call report_no_line(path, target, error)
-            return
-         end if
-         call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
-                          ': none of '//to_text(combinations)//' combinations of loading and unloading '// &
-                          'springs lets it go on or back; '//trim(weakest_spring(path))//' has the least '// &
-                          'stiffness left. The path up to there is kept. Strength that is lost more '// &
-                          'slowly, or a response in time, goes on')
-      end subroutine report_snap_back
 
       !> Springs that are blocked on their lines for the present rates, and joints on their planes.
       subroutine find_stopped()
@@ -190,193 +183,175 @@ contains
          do j = 1, merge(springs_blocked, min(springs_blocked, 1), all_of_them)
             associate (i => blocked(j))
                path%changed(i) = path%changed(i) + 1
-               call path%springs%leave(i, merge(1, -1, path%rate(i) > 0.0_wp))
+               call leave(path%springs, i, merge(1, -1, path%rate(i) > 0.0_wp))
             end associate
          end do
       end subroutine change_lines
 
-      !> Try both ways of the springs at a corner in all combinations, one change at a time (Gray code), until
-      !> none is blocked: equal springs in series reach their caps at once. A path that may go back takes the
-      !> way forward if there is one. Of more springs than can be tried, those come first that the search has
-      !> changed more than once.
-      subroutine try_all_ways()
-         integer, allocatable :: tried(:)
-         integer :: trial, i, most
-
-         tried = pack([(i, i=1, path%moving)], [(exit_direction(path%springs, i) /= 0, i=1, path%moving)])
-         tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
-         most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
-         tried = tried(:min(size(tried), most))
-         combinations = 2**size(tried)
-         path%passes = path%may_go_back
-         do trial = 1, merge(2, 1, path%may_go_back .and. any(path%arrived /= 0))*combinations
-            call path%solve_line(merge(direction, -direction, trial <= combinations), found)
-            if (found) then
-               call find_stopped()
-               found = stopped == 0
-               ! A path on which all springs turn back would return as it came.
-               if (trial > combinations) found = found .and. goes_on(path)
-               if (found) exit
-            end if
-            if (trial == 2*combinations) exit
-            ! The bit that changes next in the Gray code, which ends one change before it begins.
-            i = min(trailz(trial) + 1, size(tried))
-            if (i > 0) call path%springs%leave(tried(i), exit_direction(path%springs, tried(i)))
-         end do
-         path%passes = .false.
-         if (.not. found) return
-         path%goes_back = trial > combinations
-         path%direction = merge(-direction, direction, path%goes_back)
-      end subroutine try_all_ways
-
    end subroutine turn_corner
 
-   !> Follow the path of a structure that softens through a corner, and back where it snaps back.
+   !> Follow the rates through the corner of a structure that softens, from those before it to those after it.
    !>
-   !> Each spring on a one-way line may virtually move back by a small gap before it turns. Then the corner is
-   !> one of a continuous piecewise linear map, through which one path runs: the spring that has changed its
-   !> line last continues in its direction, which decides whether the control moves forward or back; the first
-   !> spring that is blocked on these rates changes its line and is the last one now. No lines come twice.
-   !> Where no spring is blocked ahead, these rates lead out of the corner, however small the gaps are. Of
-   !> several ways out, as symmetric structures have them, the gaps choose one.
-   subroutine follow_through(path, toward, found)
+   !> Katzenelson's homotopy (IEEE Trans. Circuit Theory 12 (1965) 544): the rates before the corner solve the
+   !> equations behind it with a force added to each spring that has come to an end, which is taken away
+   !> evenly. In other words each spring on a one-way line may virtually move back by a gap, in proportion to
+   !> its rate, before it turns. The springs that have changed their lines last continue in their directions,
+   !> which decides whether the control moves forward or back; those that are blocked first on these rates,
+   !> equal ones at once, change their lines next. The end of this path is the way out. Nothing depends on the
+   !> order of springs, and equal ones do the same.
+   subroutine follow_through(path, found)
+      !> The mark of its springs is the corner
       class(static_path), intent(inout) :: path
-      !> Direction of the target; the mark of the springs is the corner
-      integer, intent(in) :: toward
+      !> Not where the path leads back to where it came from
       logical, intent(out) :: found
-      !> Virtual motions of the springs, gaps, where they have changed their lines, stiffness of the line
-      !> after the corner
-      real(wp), dimension(path%moving) :: v, gap, edge, k
-      !> Whether a spring is virtually back on the line on which it came to the corner
-      logical :: is_back(path%moving)
-      integer :: crossed(path%moving), i, m, first, spring, next, heading, goes, sense, pivots, trial, ends
+      !> Virtual motions of the springs, and gaps; stiffnesses of their lines ahead and of those on which they
+      !> go back
+      real(wp), dimension(path%moving) :: v, gap, forward, backward
+      !> Directions ahead, 0 for springs that have none; the line of each: that ahead, that on which it has
+      !> come to the corner, that on which it goes back; whether the last one is known
+      integer, dimension(path%moving) :: ahead, line
+      logical :: is_known(path%moving)
+      !> Springs that have changed their lines last, and their directions
+      integer :: changed(path%moving), heading(path%moving), count
+      integer, parameter :: on = 0, came = 1, back = 2
+      integer :: i, m, sense, pivots
 
       m = path%moving
-      first = findloc(path%arrived(:m) /= 0, .true., dim=1)
-      path%passes = .true.
-      ! If one end of the path is plain unloading, the other one leads on. Where it closes in itself, other
-      ! gaps may open it.
-      do trial = 1, 2*most_gaps
-         ends = merge(1, -1, modulo(trial, 2) == 1)
-         gap = [(1.0_wp + modulo(i*((trial + 1)/2)*golden, 1.0_wp), i=1, m)]
-         gap = gap*max(abs(path%rate_in(:m)), at_rest**(1.0_wp/((trial + 1)/2))*maxval(abs(path%rate_in(:m))))
-         v = 0.0_wp
-         is_back = .false.
-         ! Springs that have come to their ends at once did so one after the other.
-         crossed = path%arrived(:m)
-         edge = -0.1_wp*crossed*gap
-         edge(first) = 0.0_wp
-         do i = 1, m
-            if (crossed(i) == 0) cycle
-            if (is_on_closed_end(path%springs, i, crossed(i))) call path%springs%leave(i, crossed(i))
-         end do
-         k = path%springs%k(:m)
-         spring = first
-         goes = ends*crossed(first)
-         if (ends < 0) call change(first, goes, 0.0_wp)
-         do pivots = 1, 100 + 4*m
-            call path%solve_line(1, found)
-            if (.not. found) exit
-            sense = merge(1, -1, goes*path%rate(spring) > 0.0_wp)
-            path%rate = sense*path%rate
-            call find_next()
-            if (next == 0) exit
-         end do
-         found = found .and. next == 0
-         if (found) found = goes_on(path)
-         do i = 1, m
-            if (is_back(i)) call path%springs%set_stiffness(i, k(i))
-         end do
-         if (found) exit
-         call path%springs%restore()
+      gap = abs(path%rate_in(:m))
+      gap = max(gap, at_rest*maxval(gap))
+      v = 0.0_wp
+      ahead = path%arrived(:m)
+      line = on
+      is_known = .false.
+      call go_ahead()
+      forward = path%springs%k(:m)
+      count = 0
+      do i = 1, m
+         if (ahead(i) == 0) cycle
+         call add(i, ahead(i))
       end do
+      path%passes = .true.
+      do pivots = 1, 100 + 4*m
+         call path%solve_line(1, found)
+         if (.not. found) exit
+         sense = merge(1, -1, sum(heading(:count)*path%rate(changed(:count))*gap(changed(:count))* &
+                                  path%structure%initial_stiffness(changed(:count))) > 0.0_wp)
+         path%rate = sense*path%rate
+         call change_first()
+         if (count == 0 .or. all(path%arrived(:m) == 0 .or. line /= on)) exit
+      end do
+      found = found .and. count == 0
+      ! Where all turn back, it is the way on which the path has come.
+      if (found) found = any(path%rate(:m)*path%rate_in(:m) > 0.0_wp .and. &
+                             (ahead /= 0 .or. path%springs%unload_on_reversal(:m) /= 0))
+      do i = 1, m
+         if (ahead(i) /= 0) call path%springs%set_stiffness(i, forward(i))
+      end do
+      call path%springs%restore()
+      if (found) then
+         call go_ahead()
+         do i = 1, m
+            if (line(i) == back) call leave(path%springs, i, -ahead(i))
+         end do
+         call path%solve_line(sense, found)
+         path%direction = sense
+      end if
       path%passes = .false.
-      if (.not. found) return
-      path%direction = sense
-      path%goes_back = sense /= toward
 
    contains
 
-      !> The spring that is blocked first, and its change of lines; 0: none is.
-      subroutine find_next()
-         real(wp) :: at, clearance, least, next_at
-         logical :: is_blocked(m)
-         integer :: blocked(m), count, next_heading
+      !> Springs that have come to closed ends leave their lines.
+      subroutine go_ahead()
+         integer :: i
 
-         next = 0
-         next_heading = 0
-         next_at = 0.0_wp
-         least = huge(1.0_wp)
+         do i = 1, m
+            associate (direction => path%arrived(i))
+               if (direction == 0) cycle
+               if (is_on_closed_end(path%springs, i, direction)) call leave(path%springs, i, direction)
+            end associate
+         end do
+      end subroutine go_ahead
+
+      subroutine add(i, direction)
+         integer, intent(in) :: i, direction
+
+         count = count + 1
+         changed(count) = i
+         heading(count) = direction
+      end subroutine add
+
+      !> The springs that are blocked first change their lines.
+      subroutine change_first()
+         real(wp) :: at(m), clearance(m), least
+         integer :: next(m), blocked(m), way, i
+         logical :: is_blocked(m)
+
          call find_blocked(path%springs, path%rate(:m), blocked, count)
          is_blocked = .false.
          is_blocked(blocked(:count)) = .true.
+         clearance = huge(1.0_wp)
          do i = 1, m
-            if (is_back(i)) then
-               heading = merge(1, -1, path%rate(i) > 0.0_wp)
-               if (.not. abs(path%rate(i)) > 0.0_wp) cycle
-               at = edge(i)
-               if (heading /= path%arrived(i)) at = edge(i) + heading*gap(i)
-            else
+            if (.not. abs(path%rate(i)) > 0.0_wp) cycle
+            way = merge(1, -1, path%rate(i) > 0.0_wp)
+            if (ahead(i) == 0) then
                if (.not. is_blocked(i)) cycle
-               heading = merge(1, -1, path%rate(i) > 0.0_wp)
-               at = merge(edge(i), heading*gap(i), crossed(i) == -heading)
-               if (heading == path%arrived(i) .and. path%one_way(i)) at = edge(i) - heading*gap(i)
+               ahead(i) = -way
             end if
-            clearance = max((at - v(i))*heading, 0.0_wp)/abs(path%rate(i))
-            if (.not. clearance < least) cycle
-            least = clearance
-            next = i
-            next_heading = heading
-            next_at = at
-         end do
-         if (next == 0) return
-         v = v + least*path%rate(:m)
-         call change(next, next_heading, next_at)
-         spring = next
-         goes = next_heading
-      end subroutine find_next
-
-      !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line moves back
-      !> as it came, and turns a gap later.
-      subroutine change(i, heading, at)
-         integer, intent(in) :: i, heading
-         real(wp), intent(in) :: at
-
-         v(i) = at
-         associate (springs => path%springs, came => path%arrived(i))
-            if (.not. is_back(i) .and. heading == -came .and. path%one_way(i)) then
-               is_back(i) = .true.
-               call springs%set_stiffness(i, path%k_in(i))
-            else if (is_back(i)) then
-               is_back(i) = .false.
-               call springs%set_stiffness(i, k(i))
-               if (heading == came) return
-               call leave(springs, i, heading)
-               crossed(i) = heading
+            if (line(i) == merge(on, back, way == ahead(i))) cycle
+            next(i) = line(i) - way*ahead(i)
+            if (path%arrived(i) == 0) then
+               at(i) = -ahead(i)*gap(i)
+               next(i) = merge(on, back, way == ahead(i))
+            else if (path%one_way(i)) then
+               at(i) = merge(0.0_wp, -ahead(i)*gap(i), min(line(i), next(i)) == on)
             else
-               call leave(springs, i, heading)
-               crossed(i) = heading
-               if (heading == came .and. path%one_way(i)) then
-                  is_back(i) = .true.
-                  k(i) = springs%k(i)
-                  call springs%set_stiffness(i, path%k_in(i))
-               else
-                  edge(i) = at
-               end if
+               at(i) = 0.0_wp
+               next(i) = merge(on, back, way == ahead(i))
             end if
-         end associate
+            clearance(i) = max((at(i) - v(i))*way, 0.0_wp)/abs(path%rate(i))
+         end do
+         count = 0
+         least = minval(clearance)
+         if (.not. least < huge(1.0_wp)) return
+         v = v + least*path%rate(:m)
+         do i = 1, m
+            if (.not. clearance(i) < huge(1.0_wp)) cycle
+            if ((clearance(i) - least)*abs(path%rate(i)) > same_rate*gap(i)) cycle
+            call add(i, merge(1, -1, path%rate(i) > 0.0_wp))
+            v(i) = at(i)
+            call change(i, next(i))
+         end do
+      end subroutine change_first
+
+      !> Put a spring on one of its lines, for rates alone.
+      subroutine change(i, next)
+         integer, intent(in) :: i, next
+         real(wp) :: k
+
+         line(i) = next
+         if (next == back .and. .not. is_known(i)) then
+            call path%springs%set_stiffness(i, forward(i))
+            call leave(path%springs, i, -ahead(i))
+            backward(i) = path%springs%k(i)
+            is_known(i) = .true.
+         end if
+         k = forward(i)
+         if (next == came) k = path%k_in(i)
+         if (next == back) k = backward(i)
+         call path%springs%set_stiffness(i, k)
       end subroutine change
 
    end subroutine follow_through
 
-   !> Put a spring on the line that follows; a line without length, as layers have that unload at once after
-   !> they were loaded again, is left in the direction in which it is met.
+   !> Put a spring on the line that follows in a direction. A line without length, as layers have that unload
+   !> at once after they were loaded again, and one whose end is met at once are left too.
    subroutine leave(springs, i, side)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i, side
 
       call springs%leave(i, side)
-      if (springs%upper(i) - springs%lower(i) <= on_the_end*abs(springs%d(i))) call springs%leave(i, side)
+      if (springs%upper(i) - springs%lower(i) <= on_the_end*abs(springs%d(i)) .or. &
+          is_on_end(springs, i, springs%d(i), real(side, wp))) call springs%leave(i, side)
    end subroutine leave
 
    !> Whether a spring is on an end that belongs to its line.
@@ -390,27 +365,6 @@ contains
          is_on_closed_end = springs%includes_lower_end(i) .and. springs%d(i) <= springs%lower(i)
       end if
    end function is_on_closed_end
-
-   !> Direction in which a spring can leave its line from its present deformation, 0 if it cannot.
-   pure integer function exit_direction(springs, i)
-      type(spring_array), intent(in) :: springs
-      integer, intent(in) :: i
-
-      exit_direction = -springs%unload_on_reversal(i)
-      if (exit_direction /= 0) return
-      if (springs%d(i) >= springs%end_toward(i, 1)) then
-         exit_direction = 1
-      else if (springs%d(i) <= springs%end_toward(i, -1)) then
-         exit_direction = -1
-      end if
-   end function exit_direction
-
-   !> Whether a spring goes on in its direction before the corner.
-   pure logical function goes_on(path)
-      class(static_path), intent(in) :: path
-
-      goes_on = any(path%rate(:path%moving)*path%rate_in(:path%moving) > 0.0_wp)
-   end function goes_on
 
    !> Whether a structure whose displacement is driven has no strength left.
    pure logical function is_spent(path)

@@ -64,6 +64,8 @@ module rbs_solve_static_equilibrium
       logical :: may_snap_back = .false.
       !> Whether the stiffnesses are too far apart for the arithmetic
       logical :: lost_digits = .false.
+      !> Whether the structure is stable on the present lines while the driven displacement is held
+      logical :: is_stable = .false.
       !> Rates of force and displacement; work of the load per force and per unit of the driven quantity, less
       !> that of the displacement
       real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, dead_load_work_rate = 0.0_wp
@@ -220,6 +222,7 @@ contains
       real(wp) :: residual
 
       self%lost_digits = .false.
+      self%is_stable = all(springs%k(:self%moving) >= 0.0_wp) .and. .not. self%structure%axially_loaded
       residual = displacement - self%structure%top_displacement(springs%d)
       if (self%is_dense .and. .not. by_force) then
          call self%find_unbalance(springs, force)
@@ -356,17 +359,11 @@ contains
       logical :: settled, shares
 
       associate (structure => self%structure)
-         call structure%linearise(springs%k, self%tangent, self%unstable, shares)
-         found = self%unstable == 0 .or. self%may_snap_back
-         if (.not. found) return
-         call find_residual(self, springs, force)
-         call factor(self, springs%k, by_force, found)
-         if (.not. found) return
-         ! A part that gives way beside the top moves without end while the top does not.
-         call solve(1, 1.0_wp, found)
-         if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
-         ! Where hinges make a mechanism of a member between nodes at rest, its own load moves it.
-         if (self%of_dead_load .and. shares) found = found .and. maxval(abs(self%inner_load)) < falls
+         call find_rates(springs%k, .false., found)
+         ! A node between springs without stiffness is free to turn.
+         if (.not. found .and. self%unstable == 0 .and. .not. by_force .and. .not. self%refines) then
+            call find_rates(with_hardening(springs%k, structure%initial_stiffness), .true., found)
+         end if
          if (.not. found) return
          rate = self%moved(:, 1)
          call springs%joints%open_layers(rate)
@@ -378,6 +375,7 @@ contains
          self%force_rate = y(1)
          self%displacement_rate = 1.0_wp
          if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
+         self%is_stable = self%matrix%negative == merge(1, 0, self%force_rate < 0.0_wp)
          self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
          call solve(2, residual, settled)
          ! In a mechanism the correction of round-off is round-off itself; more than that is found by the row.
@@ -392,6 +390,27 @@ contains
       end associate
 
    contains
+
+      !> Rates with given stiffnesses of the springs.
+      subroutine find_rates(k, is_hardened, found)
+         real(wp), intent(in), contiguous :: k(:)
+         !> Whether springs without stiffness have some
+         logical, intent(in) :: is_hardened
+         logical, intent(out) :: found
+
+         call self%structure%linearise(k, self%tangent, self%unstable, shares)
+         shares = shares .or. is_hardened
+         found = self%unstable == 0 .or. self%may_snap_back
+         if (.not. found) return
+         call find_residual(self, springs, force)
+         call factor(self, k, by_force, found)
+         if (.not. found) return
+         call solve(1, 1.0_wp, found)
+         ! A part that gives way beside the top moves without end while the top does not.
+         if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
+         ! Where hinges make a mechanism of a member between nodes at rest, its own load moves it.
+         if (self%of_dead_load .and. shares) found = found .and. maxval(abs(self%inner_load)) < falls
+      end subroutine find_rates
 
       !> Changes per unit of the driven quantity (1), or by the residual (2), and the force of these changes.
       subroutine solve(j, displacement, regular)
@@ -467,13 +486,7 @@ contains
       associate (structure => self%structure, matrix => self%matrix)
          matrix%band = 0.0_wp
          self%f = k
-         ! Springs without stiffness share a motion as with a hardening in proportion to their initial
-         ! stiffness, which the refinement takes away.
-         if (self%refines .and. .not. by_force) then
-            where (abs(k) <= no_stiffness*structure%initial_stiffness)
-               self%f = shared*structure%initial_stiffness
-            end where
-         end if
+         if (self%refines .and. .not. by_force) self%f = with_hardening(k, structure%initial_stiffness)
          call structure%add_stiffness(self%f, self%tangent, matrix%band)
          if (structure%axially_loaded) call structure%add_geometric(self%axial, matrix%band)
          call hold_still(self)
@@ -488,6 +501,14 @@ contains
          end if
       end associate
    end subroutine factor
+
+   !> Springs without stiffness share a motion as with a hardening in proportion to their initial stiffness,
+   !> which the refinement takes away.
+   elemental real(wp) function with_hardening(k, initial)
+      real(wp), intent(in) :: k, initial
+
+      with_hardening = merge(k, shared*initial, abs(k) > no_stiffness*initial)
+   end function with_hardening
 
    !> Work of the load per unit of it and of the driven quantity.
    real(wp) function work_rate(self, rate) result(work)

@@ -197,6 +197,7 @@ contains
       call self%equilibrium%follow(self%springs, self%by_force, self%displacement, self%force, self%rate, &
                                    found)
       self%lost_digits = self%equilibrium%lost_digits
+      self%is_stable = self%equilibrium%is_stable
       if (direction < 0) self%rate = -self%rate
    end subroutine solve_line
 
