@@ -355,7 +355,7 @@ def main() -> None:
     print_histories(console, measured)
     print_table(
         console,
-        "(a) Predicted from the drawings (layered model), driven by the displacement",
+        "(a) Prediction of rbsdem from the drawings, driven by the measured displacement",
         "rms force\nerror",
         "Error over the measured peak. The model knows of a column what table 2 says. Its\n"
         "parameters, the same for all columns, are fitted to many tests, these four among\n"
@@ -364,16 +364,17 @@ def main() -> None:
     )
     print_table(
         console,
-        "(b) Springs of table 3, driven by the measured force (figure 3 of the paper)",
+        "(b) No prediction: the paper's springs, driven by the measured force (its figure 3)",
         "rms displ.\nerror",
-        "RK4 on equation 4. Error over the measured peak. RK4 - static: largest\n"
-        "difference of displacement from the static path, over its peak. Stiffness:\n"
+        "The paper's springs lose no strength, hence their large errors. Error over the\n"
+        "measured peak; RK4 on equation 4. RK4 - static: largest difference of\n"
+        "displacement from the static path, over its peak. Stiffness:\n"
         "secant at 70 % of the curve's own peak force.",
         by_drive["force"],
     )
     print_table(
         console,
-        "(c) Springs of table 3, driven by the displacement (static path, P-Delta)",
+        "(c) No prediction: the paper's springs, driven by the measured displacement",
         "rms force\nerror",
         "Error over the measured peak. Stiffness: secant at 70 % of the curve's own peak\n"
         "force, which lies after yield where a model reaches far more than the test.",

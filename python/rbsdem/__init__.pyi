@@ -2,6 +2,7 @@
 from rbsdem import codes as codes
 from rbsdem import curves as curves
 from rbsdem import errors as errors
+from rbsdem import examples as examples
 from rbsdem import fragility as fragility
 from rbsdem import frames as frames
 from rbsdem import motions as motions

@@ -10,7 +10,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import rbsdem
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted(path for path in (REPOSITORY / "examples").iterdir() if path.is_dir())
@@ -31,11 +34,6 @@ def run(command: list[str | Path], cwd: Path) -> str:
     )
     assert result.returncode == 0, f"{command}\n{result.stdout[-2000:]}\n{result.stderr[-2000:]}"
     return result.stdout
-
-
-def readme_blocks(*languages: str) -> list[str]:
-    text = (REPOSITORY / "README.md").read_text("utf-8")
-    return [block for language, block in BLOCK.findall(text) if language in languages]
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -118,18 +116,6 @@ def test_numbers_of_the_readme_stand_in_the_pages_it_names():
     assert counted >= 8
 
 
-def test_namelist_blocks_of_the_readme_run(executable, tmp_path):
-    blocks = readme_blocks("fortran", "nml")
-    assert blocks
-    assert any(5 <= len(block.strip().splitlines()) <= 15 for block in blocks)
-    for i, block in enumerate(blocks):
-        path = tmp_path / f"block{i}.nml"
-        path.write_text(block, "utf-8")
-        for command in ("check", "run", "modes"):
-            assert run([executable, command, path.name], tmp_path).strip()
-        assert (tmp_path / f"block{i}.csv").is_file()
-
-
 def test_commands_of_the_readme_are_those_there():
     """Scripts and documents that the README names exist."""
     text = (REPOSITORY / "README.md").read_text("utf-8")
@@ -138,3 +124,22 @@ def test_commands_of_the_readme_are_those_there():
     assert "scripts/test.sh" in named
     missing = [name for name in sorted(named) if not (REPOSITORY / name).exists()]
     assert not missing
+
+
+def test_ready_models_are_those_of_the_readme():
+    """The house of the README is that of `rbsdem.examples`, to the last bit of its push-over."""
+    text = (REPOSITORY / "README.md").read_text("utf-8")
+    drawn = next(block for kind, block in BLOCK.findall(text) if kind == "python")
+    program = drawn[: drawn.index("push = ")]
+    scope: dict[str, object] = {}
+    exec(program, scope)
+    pushes = [rbsdem.pushover(one, drift=0.01) for one in (scope["house"], rbsdem.examples.house())]
+    assert np.array_equal(*(push.base_shear for push in pushes))
+
+
+def test_ready_models_answer():
+    """Each stands under its dead load, and sways at a period of a building of its height."""
+    for model, longest in ((rbsdem.examples.portal(), 1.0), (rbsdem.examples.pier(), 2.0)):
+        period = 1 / rbsdem.modes(model).frequency[0]
+        assert 0.1 < period < longest
+        assert rbsdem.pushover(model, drift=0.01).summary["status"] == "completed"

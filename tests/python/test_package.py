@@ -28,8 +28,8 @@ PUBLIC = [getattr(rbsdem, name) for name in rbsdem.__all__] + [
 
 def test_the_surface_is_small_and_in_order():
     assert rbsdem.__all__ == sorted(rbsdem.__all__)
-    # 38 for columns, 4 for frames, 4 for walls, and `verify`.
-    assert len(set(rbsdem.__all__)) == len(rbsdem.__all__) <= 45
+    # 38 for columns, 4 for frames, 4 for walls, `verify`, and `examples`.
+    assert len(set(rbsdem.__all__)) == len(rbsdem.__all__) <= 46
     offered = [
         name
         for file in ("__init__.pyi", "[c-s]*.py", "c*/__init__.py", "motions/__init__.py",
@@ -123,7 +123,7 @@ def test_package_works_from_a_folder_with_files_of_its_name(tmp_path):
     ],
 )
 def test_extra_that_is_missing_is_named(package, extra, what):
-    """The line for pip names an extra that pyproject.toml has, and the README knows it."""
+    """The line for pip names an extra that pyproject.toml has, and docs/install.md knows it."""
     code = f"""
 import sys
 sys.modules[{package!r}] = None
@@ -140,7 +140,7 @@ except ImportError as error:
     assert f'{package} is not installed: pip install "rbsdem[{extra}]"' in done.stdout
     project = (REPOSITORY / "pyproject.toml").read_text()
     assert re.search(rf'^{extra} = \["{package}>=', project, re.M)
-    assert f".[{extra}]" in (REPOSITORY / "README.md").read_text()
+    assert f".[{extra}]" in (REPOSITORY / "docs/install.md").read_text()
 
 
 def test_a_warning_names_the_line_of_the_caller():
