@@ -229,7 +229,7 @@ contains
       type(text_buffer) :: text
       real(c_double), allocatable :: position(:), stiffness(:)
       real(c_double) :: of_joint(2)
-      integer :: i, first, last
+      integer :: i
 
       do i = 1, frame%n
          call text%append(trim(frame%node_name(i))//tab)
@@ -247,12 +247,9 @@ contains
             call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
          else if (frame%heads(i)) then
             ! About the centre of stiffness of its layers [N m/rad], and axially [N/m]
-            associate (e => frame%element(frame%location(i)%member), joint => frame%location(i)%joint)
-               first = e%first(joint)
-               last = e%first(joint + 1) - 1
-               associate (k => frame%initial_stiffness(e%before + first:e%before + last), &
-                          y => e%y(first:last))
-                  of_joint = [sum(k*(y - sum(k*y)/sum(k))**2), sum(k)]
+            associate (e => frame%element(frame%location(i)%member))
+               associate (of => e%joint(frame%location(i)%joint))
+                  of_joint = e%initial(of%spring)*[of%radius**2, 1.0_c_double]
                end associate
             end associate
             call add_spring(kinds(flexure), 'layered', of_joint(1))

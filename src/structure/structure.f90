@@ -12,6 +12,7 @@ module rbs_structure_structure
    use rbs_hysteresis_layer_joints, only: layer_joints
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    use rbs_structure_spring_location, only: spring_location
@@ -110,11 +111,9 @@ module rbs_structure_structure
       !> Number of axial forces that may do second-order work, and of numbers in the work array of
       !> `accelerations`
       integer :: axial_count = 0, work_size = 0
-      !> Numbers that depend on the present stiffness of the springs: none where deformations follow from the
-      !> unknowns alone
-      integer :: tangent_numbers = 0
-      !> They, on the initial stiffness (tangent_numbers)
-      real(wp), allocatable :: initial_tangent(:)
+      !> Parts between the unknowns, whose deformations depend on the present stiffness of the springs, on the
+      !> initial one: none where deformations follow from the unknowns alone (parts)
+      type(series_tangent), allocatable :: initial_tangent(:)
       !> Loads in the order of their signals (signals)
       type(load_pattern) :: pattern(signals)
    contains
@@ -195,9 +194,10 @@ module rbs_structure_structure
       real(wp), allocatable :: axial(:)
       !> Work array of the structure (work_size)
       real(wp), allocatable :: work(:)
-      !> Tangent for the stiffness of the springs (tangent_numbers), and changes of the coordinates that bring
-      !> the parts between the unknowns to equilibrium (coordinates, or none)
-      real(wp), allocatable :: tangent(:), correction(:)
+      !> Parts between the unknowns on the present lines (parts), and changes of the coordinates that bring
+      !> them to equilibrium (coordinates, or none)
+      type(series_tangent), allocatable :: tangent(:)
+      real(wp), allocatable :: correction(:)
       !> Resistance of the springs against deformation from `anchor`, as a share of their initial stiffness,
       !> in the search for one of several states; 0 in equilibrium. Position where it begins
       !> (coordinates, or none)
@@ -209,11 +209,13 @@ module rbs_structure_structure
 
    abstract interface
       subroutine gather(self, tangent, dx, dd)
-         import :: structure_type, wp
+         import :: structure_type, series_tangent, wp
          implicit none
          class(structure_type), intent(in) :: self
-         !> See `linearise`; (unknowns)
-         real(wp), intent(in), contiguous :: tangent(:), dx(:)
+         !> See `linearise`
+         type(series_tangent), intent(in) :: tangent(:)
+         !> (unknowns)
+         real(wp), intent(in), contiguous :: dx(:)
          !> (springs)
          real(wp), intent(out), contiguous :: dd(:)
       end subroutine gather
@@ -230,11 +232,13 @@ module rbs_structure_structure
 
       !> Forces of springs, of loads but the inertia of the moving ground, and of axial forces.
       subroutine collect(self, d, load, axial, tangent, f, g, correction, dead)
-         import :: structure_type, wp
+         import :: structure_type, series_tangent, wp
          implicit none
          class(structure_type), intent(in) :: self
-         !> Deformations (springs), signals of the loads, axial forces (see `axial_forces`), see `linearise`
-         real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
+         !> Deformations (springs), signals of the loads, axial forces (see `axial_forces`)
+         real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+         !> See `linearise`
+         type(series_tangent), intent(in) :: tangent(:)
          !> Forces of the springs; those of slips get the second-order share of the axial forces (springs)
          real(wp), intent(inout), contiguous :: f(:)
          !> (unknowns) [N, N m]
@@ -256,11 +260,12 @@ module rbs_structure_structure
 
       !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
       subroutine assemble_springs(self, k, tangent, band)
-         import :: structure_type, wp
+         import :: structure_type, series_tangent, wp
          implicit none
          class(structure_type), intent(in) :: self
          !> Stiffness of the springs, and the tangent of it (see `linearise`)
-         real(wp), intent(in), contiguous :: k(:), tangent(:)
+         real(wp), intent(in), contiguous :: k(:)
+         type(series_tangent), intent(in) :: tangent(:)
          !> (half_width + 1, unknowns)
          real(wp), intent(inout), contiguous :: band(:, :)
       end subroutine assemble_springs
@@ -332,7 +337,7 @@ contains
       real(wp) :: at_rest(signals)
       integer :: inside
 
-      inside = merge(structure%coordinates, 0, structure%tangent_numbers > 0)
+      inside = merge(structure%coordinates, 0, size(structure%initial_tangent) > 0)
       allocate (self%a(structure%coordinates), self%f(size(structure%location)), &
                 self%force(structure%unknowns), self%work(structure%work_size), &
                 self%axial(structure%axial_count), &
@@ -595,8 +600,7 @@ contains
       class(structure_type), intent(in) :: self
       !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
-      !> (tangent_numbers)
-      real(wp), intent(inout), contiguous :: tangent(:)
+      type(series_tangent), intent(inout) :: tangent(:)
       !> A part whose springs determine its motion no more; 0: none
       integer, intent(out) :: unstable
       !> Whether springs without stiffness share motions as if they had some, which refinement takes away
@@ -610,7 +614,8 @@ contains
    subroutine damp(self, v, tangent, g)
       class(structure_type), intent(in) :: self
       !> Velocities of the unknowns (unknowns); see `linearise`
-      real(wp), intent(in), contiguous :: v(:), tangent(:)
+      real(wp), intent(in), contiguous :: v(:)
+      type(series_tangent), intent(in) :: tangent(:)
       !> (unknowns)
       real(wp), intent(inout), contiguous :: g(:)
    end subroutine damp
@@ -619,7 +624,7 @@ contains
    subroutine add_damping(self, factor, tangent, band)
       class(structure_type), intent(in) :: self
       real(wp), intent(in) :: factor
-      real(wp), intent(in), contiguous :: tangent(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
    end subroutine add_damping
 
@@ -641,8 +646,10 @@ contains
    !> Take rates that are round-off of larger ones for zero, where deformations are condensed.
    pure subroutine drop_round_off(self, tangent, dx, dd)
       class(structure_type), intent(in) :: self
-      !> See `linearise`; rates of the unknowns (unknowns)
-      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      !> See `linearise`
+      type(series_tangent), intent(in) :: tangent(:)
+      !> Rates of the unknowns (unknowns)
+      real(wp), intent(in), contiguous :: dx(:)
       !> Of the springs (springs)
       real(wp), intent(inout), contiguous :: dd(:)
    end subroutine drop_round_off

@@ -3,6 +3,7 @@ program unit_tests
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use check, only: unit_test, run_suite
    use test_capped, only: collect_capped
+   use test_condensation, only: collect_condensation
    use test_concrete, only: collect_concrete
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
@@ -28,11 +29,12 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(10)
+   type(suite_type) :: suites(11)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
    suites = [suite_type('section', collect_section), suite_type('linalg', collect_linalg), &
+             suite_type('condensation', collect_condensation), &
              suite_type('takeda', collect_takeda), suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &
              suite_type('concrete', collect_concrete), suite_type('steel', collect_steel), &

@@ -10,6 +10,7 @@ module rbs_solve_begin_make_structure
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_dead_load, only: put_dead_load
    use rbs_structure_column_column, only: column_type
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_new_frame, only: new_frame
    use rbs_structure_structure, only: structure_type, small, pdelta, lateral, horizontal
@@ -107,11 +108,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(band_matrix) :: matrix
       character(len=12), parameter :: motion(3) = [character(len=12) :: 'move along x', 'move up', 'turn']
-      real(wp) :: tangent(frame%tangent_numbers), band(frame%half_width + 1, frame%unknowns)
+      type(series_tangent), allocatable :: tangent(:)
+      real(wp) :: band(frame%half_width + 1, frame%unknowns)
       real(wp) :: stiffness(frame%members), softest
       integer :: at(2), unstable, i
 
-      tangent = 0.0_wp
+      tangent = frame%initial_tangent
       call frame%linearise(frame%initial_stiffness, tangent, unstable)
       if (unstable > 0) then
          call fatal_error(error, bad_input, 'member '//trim(frame%member_name(unstable))//': its springs '// &
@@ -122,17 +124,14 @@ contains
       if (matrix%positive .and. maxval(matrix%triangle(1, :)) < most_lost) return
       ! With members of like stiffness a mechanism differs from round-off.
       do i = 1, frame%members
-         associate (at_element => frame%element(i)%layout%stiffness, length => frame%element(i)%length)
-            stiffness(i) = max(tangent(at_element), tangent(at_element + 4)/length**2, &
-                               tangent(at_element + 8)/length**2)
+         associate (of => tangent(i)%stiffness, length => frame%element(i)%length)
+            stiffness(i) = max(of(1, 1), of(2, 2)/length**2, of(3, 3)/length**2)
          end associate
       end do
       softest = minval(stiffness, mask=stiffness > 0.0_wp)
       do i = 1, frame%members
-         associate (at => frame%element(i)%layout%stiffness)
-            if (stiffness(i) > like_stiffness*softest) then
-               tangent(at:at + 8) = tangent(at:at + 8)*(like_stiffness*softest/stiffness(i))
-            end if
+         associate (of => tangent(i)%stiffness)
+            if (stiffness(i) > like_stiffness*softest) of = of*(like_stiffness*softest/stiffness(i))
          end associate
       end do
       call factor_stiffness()

@@ -105,7 +105,7 @@ contains
          end if
       end if
       ! These also refuse a structure that buckles under its axial load alone.
-      if (structure%tangent_numbers > 0) then
+      if (size(structure%initial_tangent) > 0) then
          call check_at_rest(structure, error)
       else
          call stability_limit(structure, modes%stable_step, error)
@@ -161,7 +161,7 @@ contains
       real(wp), intent(inout), contiguous :: shape(:)
       real(wp) :: along
 
-      if (structure%tangent_numbers > 0) then
+      if (size(structure%initial_tangent) > 0) then
          shape = found
          along = -structure%work_of(horizontal, shape)
       else if (opens) then

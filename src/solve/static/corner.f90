@@ -108,7 +108,7 @@ contains
             if (.not. found) then
                if (effort < to_the_end) return
                ! Some springs may unload, though there is no stiffness under the driven force: let them.
-               if (path%by_force .and. path%structure%tangent_numbers == 0 .and. &
+               if (path%by_force .and. size(path%structure%initial_tangent) == 0 .and. &
                    any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
                   do i = 1, path%moving
                      if (path%springs%unload_on_reversal(i) /= -direction) cycle
@@ -116,7 +116,7 @@ contains
                   end do
                   cycle
                end if
-               if (path%structure%tangent_numbers > 0) call let_one_unload()
+               if (size(path%structure%initial_tangent) > 0) call let_one_unload()
                if (found) cycle
                return
             end if

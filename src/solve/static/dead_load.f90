@@ -11,6 +11,7 @@ module rbs_solve_static_dead_load
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_frame_frame, only: frame_type
    implicit none
    private
@@ -60,13 +61,15 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(frame_type) :: loaded
       type(band_matrix) :: matrix
-      real(wp) :: tangent(frame%tangent_numbers), low, high, share
+      type(series_tangent), allocatable :: tangent(:)
+      real(wp) :: low, high, share
       integer :: i, trial, unstable
 
       if (.not. frame%axially_loaded .or. .not. any(frame%element%compression > 0.0_wp)) return
       loaded = frame
       call loaded%leave_out_later()
       call matrix%create(frame%unknowns, frame%half_width)
+      tangent = frame%initial_tangent
       low = 0.0_wp
       high = 1.0_wp
       share = high
@@ -74,7 +77,7 @@ contains
          do i = 1, frame%members
             call loaded%compress(i, share*frame%element(i)%compression)
          end do
-         tangent = 0.0_wp
+         tangent%is_known = .false.
          call loaded%linearise(loaded%initial_stiffness, tangent, unstable)
          matrix%band = 0.0_wp
          call loaded%add_stiffness(loaded%initial_stiffness, tangent, matrix%band)

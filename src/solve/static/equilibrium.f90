@@ -17,6 +17,7 @@ module rbs_solve_static_equilibrium
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_spring_location, only: flexure, axial
    use rbs_structure_structure, only: structure_type, lateral, signals
    implicit none
@@ -90,8 +91,10 @@ module rbs_solve_static_equilibrium
       !> Unknowns that supports or axial springs keep still (unknowns)
       logical, allocatable, private :: still(:)
       logical, private :: has_still = .false.
-      !> Axial forces that do second-order work, tangents of the elements
-      real(wp), allocatable, private :: axial(:), tangent(:)
+      !> Axial forces that do second-order work
+      real(wp), allocatable, private :: axial(:)
+      !> Parts between the unknowns on the present lines (parts)
+      type(series_tangent), allocatable, private :: tangent(:)
       !> Height for moments, 1 for forces (unknowns)
       real(wp), allocatable, private :: reach(:)
       !> Load per unit, residual, and an array for the loads that are solved for (unknowns)
@@ -125,7 +128,7 @@ contains
       m = structure%unknowns
       springs = size(structure%location)
       self%moving = springs
-      self%refines = structure%tangent_numbers == 0
+      self%refines = size(structure%initial_tangent) == 0
       self%still = structure%is_held
       if (self%refines) then
          ! Axial springs of a chain keep still, and with them the last unknowns.
@@ -145,7 +148,8 @@ contains
       if (allocated(structure%reach)) self%reach(:) = structure%reach
       self%coupled = structure%axially_loaded .or. structure%has_held .or. .not. self%refines
       inner = merge(0, structure%coordinates, self%refines)
-      allocate (self%tangent(structure%tangent_numbers), self%pattern(m), self%residual(m), self%load(m), &
+      self%tangent = structure%initial_tangent
+      allocate (self%pattern(m), self%residual(m), self%load(m), &
                 self%change(m, 2), self%moved(structure%coordinates, 2), self%f(springs), &
                 self%flexible(springs), self%inner(inner), self%inner_load(inner), &
                 self%more(structure%coordinates), self%correction(structure%coordinates), source=0.0_wp)

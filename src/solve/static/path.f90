@@ -331,7 +331,7 @@ contains
          if (allocated(error) .or. ends) return
          ! The way between two points of a frame is long.
          if (associated(task%progress)) then
-            if (mod(i, 1024) == 0 .or. self%structure%tangent_numbers > 0) then
+            if (mod(i, 1024) == 0 .or. size(self%structure%initial_tangent) > 0) then
                call task%progress%update(real(i, wp)/size(target))
             end if
          end if

@@ -184,7 +184,7 @@ contains
          if (self%converged .and. self%ambiguous) call settle()
          if (self%converged) call self%check_runaway(state)
          if (.not. self%marked) return
-         associate (condensed => state%motion%structure%tangent_numbers > 0)
+         associate (condensed => size(state%motion%structure%initial_tangent) > 0)
             if (condensed) call snap_unless_smooth(self, state)
             self%weighed = condensed
          end associate
@@ -369,7 +369,7 @@ contains
          if (motion%damped) then
             self%mean(:) = 0.5_wp*(state%v + self%step%w1)
             self%of_damping = h*motion%damping_power(state%springs, self%step%q1, self%mean)
-            if (motion%structure%tangent_numbers > 0) then
+            if (size(motion%structure%initial_tangent) > 0) then
                ! Elements damp as wholes; the residual is not needed any more.
                call motion%structure%unknown_rates(self%mean, self%dx)
                self%step%r = 0.0_wp

@@ -15,6 +15,7 @@ module rbs_solve_time_implicit_balance
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_spring_location, only: flexure
    use rbs_structure_structure, only: structure_type, motion_result, unknown_group, lateral, signals
    implicit none
@@ -51,7 +52,7 @@ module rbs_solve_time_implicit_balance
       !> Tangents at the start of a step, and their version, for damping in proportion to the present
       !> stiffness: a force that falls with the stiffness within the step may leave no equilibrium. Empty
       !> where elements have no such damping
-      real(wp), allocatable :: damping_tangent(:)
+      type(series_tangent), allocatable :: damping_tangent(:)
       integer, private :: damping_version = -1
       real(wp), private :: resistance_in = 0.0_wp
       !> Whether springs without stiffness share a motion in them, of which the ends determine the sum alone
@@ -119,9 +120,12 @@ contains
                       self%w1(structure%coordinates), source=0.0_wp)
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
-            if (structure%tangent_numbers > 0) allocate (self%k(springs))
-            allocate (self%damping_tangent(merge(structure%tangent_numbers, 0, structure%tangent_damping)), &
-                      source=0.0_wp)
+            if (size(structure%initial_tangent) > 0) allocate (self%k(springs))
+            if (structure%tangent_damping) then
+               self%damping_tangent = structure%initial_tangent
+            else
+               allocate (self%damping_tangent(0))
+            end if
             if (allocated(structure%reach)) then
                self%unit_factor = 1.0_wp/structure%reach
                self%spring_factor = merge(1.0_wp/structure%total_height, 1.0_wp, &
@@ -242,7 +246,7 @@ contains
       associate (structure => state%motion%structure)
          call end_of_step(self, h)
          ! Where elements damp as wholes, the springs do not by themselves.
-         if (state%motion%damped .and. structure%tangent_numbers == 0) then
+         if (state%motion%damped .and. size(structure%initial_tangent) == 0) then
             call structure%spring_rates(self%now%tangent, self%v1, self%w1)
          end if
          call find_forces(state, self%q1, self%w1, self%v1, load, self%damping_tangent, self%now, self%g1)
@@ -259,7 +263,7 @@ contains
       real(wp), intent(in) :: h, load(signals)
       real(wp), intent(out) :: relative
 
-      if (.not. (self%known .and. state%motion%structure%tangent_numbers > 0)) then
+      if (.not. (self%known .and. size(state%motion%structure%initial_tangent) > 0)) then
          call self%find_residual(state, h, load, relative)
          return
       end if
@@ -299,14 +303,16 @@ contains
       !> Deformations of the springs and their velocities (springs), velocities of the unknowns
       real(wp), intent(in), contiguous :: q(:), w(:), v(:)
       real(wp), intent(in) :: load(signals)
-      real(wp), intent(in), contiguous :: damping_tangent(:)
+      type(series_tangent), intent(in) :: damping_tangent(:)
       type(motion_result), intent(inout) :: now
       real(wp), intent(out), contiguous :: g(:)
 
       associate (motion => state%motion, structure => state%motion%structure)
          call motion%forces_on_bodies(state%springs, q, w, load, now, g)
          call structure%add_ground(load, g)
-         if (structure%damped .and. structure%tangent_numbers > 0) call structure%damp(v, damping_tangent, g)
+         if (structure%damped .and. size(structure%initial_tangent) > 0) then
+            call structure%damp(v, damping_tangent, g)
+         end if
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
          ! Supports balance the forces on them.
          if (structure%has_held) where (structure%is_held) g = 0.0_wp
@@ -465,7 +471,7 @@ contains
 
       allocate (self%stiffness(structure%unknowns), self%k(size(structure%location)), source=0.0_wp)
       call self%matrix%create(structure%unknowns, structure%half_width)
-      if (structure%tangent_numbers == 0) return
+      if (size(structure%initial_tangent) == 0) return
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%matrix%band)
       self%initial = merge(0.0_wp, self%matrix%band(1, :), structure%inertias > 0.0_wp)
    end subroutine create

@@ -135,7 +135,7 @@ contains
                   if (task%every /= unset_integer) next_row = min(step + task%every, plan%steps)
                end if
                ! Steps of frames are long.
-               if (iand(step, merge(15, 1023, state%motion%structure%tangent_numbers > 0)) == 0) then
+               if (iand(step, merge(15, 1023, size(state%motion%structure%initial_tangent) > 0)) == 0) then
                   if (associated(task%progress)) call task%progress%update(real(step, wp)/plan%steps)
                   if (task%stops()) then
                      task%summary%remark = 'the run was stopped at time '//to_text(state%clock)// &

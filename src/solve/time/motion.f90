@@ -60,7 +60,7 @@ contains
       self%acts = acts
       self%varies = acts(vertical) .or. acts(top_axial)
       self%joint_damping = structure%stiffness_damping*structure%initial_stiffness
-      if (structure%tangent_numbers > 0) self%joint_damping = 0.0_wp
+      if (size(structure%initial_tangent) > 0) self%joint_damping = 0.0_wp
       self%damped = structure%damped
       if (.not. self%damped .and. structure%base_spring > 0) self%base_spring = structure%base_spring
       if (allocated(structure%modal_damping) .and. .not. allocated(structure%modal_momenta)) then
@@ -163,7 +163,7 @@ contains
               springs%reference_axial_load(i))
          end do
       end if
-      if (.not. self%damped .or. self%structure%tangent_numbers > 0) return
+      if (.not. self%damped .or. size(self%structure%initial_tangent) > 0) return
       if (self%structure%tangent_damping) then
          f = f + self%structure%stiffness_damping*max(springs%k, 0.0_wp)*v
       else
@@ -209,7 +209,7 @@ contains
       watt = 0.0_wp
       if (.not. self%damped) return
       associate (structure => self%structure)
-         if (structure%tangent_numbers > 0) then
+         if (size(structure%initial_tangent) > 0) then
             watt = 0.0_wp
          else if (structure%tangent_damping) then
             watt = structure%stiffness_damping*sum(max(springs%k, 0.0_wp)*v**2)

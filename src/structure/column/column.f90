@@ -15,6 +15,7 @@ module rbs_structure_column_column
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_column_chain, only: deformations, displacements, joint_forces, second_order_forces, &
                                          geometric_forces, second_order_energy, add_joint_stiffness, &
@@ -148,7 +149,8 @@ contains
    !> Changes of the deformations of the joints from those of the bodies.
    subroutine spring_rates(self, tangent, dx, dd)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      type(series_tangent), intent(in) :: tangent(:)
+      real(wp), intent(in), contiguous :: dx(:)
       real(wp), intent(out), contiguous :: dd(:)
 
       call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
@@ -167,7 +169,8 @@ contains
    !> Forces on the bodies, without the inertia of the moving ground.
    subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
@@ -246,7 +249,8 @@ contains
    !> Add B' diag(k) B.
    subroutine add_stiffness(self, k, tangent, band)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: k(:), tangent(:)
+      real(wp), intent(in), contiguous :: k(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
 
       call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)

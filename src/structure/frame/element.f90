@@ -6,21 +6,10 @@
 !> at the points of a Gauss-Lobatto rule, each with the stiffness of its share of the length, make the
 !> force-based beam-column element (Neuenhofer and Filippou, J. Struct. Eng. 123 (1997) 958-966).
 !>
-!> Springs may have no stiffness, so that nothing is divided by one. With p = (p_a, p_b), r = (-p_b, p_a) and
-!> p x p' = p_a p'_b - p_b p'_a, by the theorem of Cauchy and Binet and K = F^-1,
-!>
-!>     det F = sum_(i<j) (p_i x p_j)^2/(k_i k_j),   K = sum r_i r_i'/k_i / det F,
-!>     dd_j/dq = K p_j/k_j = sum_i (p_i x p_j) r_i/(k_i k_j) / det F
-!>
-!> where the product of all k is taken into numerator and denominator. Forces f that are not in equilibrium
-!> are brought there by deformations -H f,
-!>
-!>     H_ij = delta_ij/k_i - p_i' K p_j/(k_i k_j)
-!>
-!> Joints of layers are condensed by their compliances: with w and theta of a joint, z = (w, theta) or the one
-!> deformation of a single spring, q = sum P z + F_rest s and K_j z' = P' s', so that
-!>
-!>     F = sum P K_j^-1 P' + F_rest,   K_j = sum k [1 y; y y^2],   layers open by w + y theta
+!> A joint of layers, which open by w + y theta, is two springs. These are its motions along the axes of its
+!> stiffness sum k [1 y; y y^2], in the opening at the initial centre of stiffness y_0 and the rotation times
+!> the initial radius of gyration, so that they have one unit and are alike at the start. All are condensed by
+!> `rbs_structure_condensation`, with the elastic rest as three springs more.
 !>
 !> Compression N that does second-order work bends the elastic rest off its chord. With x = N l^2/4EI,
 !> phi = sqrt(x) and c = (1 - phi cot phi)/x, which is 1/3 without compression, end moments (M, M) and (M, -M)
@@ -28,19 +17,12 @@
 !> 1956), and a load w across the member by w l^3/24EI 3 c/(1 - c x). Where springs have the flexibility of
 !> the member, this less its value without compression is in series with them.
 module rbs_structure_frame_element
-   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
+   use rbs_hysteresis_layer_joints, only: stiffness_sums
    implicit none
    private
 
-   public :: frame_element, find_tangent, find_forces, end_forces, find_rates, motion_of_rest, unbalance
-   public :: shared, joint_numbers
-
-   !> Springs without stiffness share a motion as if each had this part of its initial one.
-   real(wp), parameter :: shared = 1.0e-9_wp
-
-   !> A sum below this share of its terms is round-off.
-   real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+   public :: frame_element, element_joint
 
    !> x at which a member buckles between ends that are clamped.
    real(wp), parameter :: largest_x = acos(-1.0_wp)**2
@@ -48,19 +30,22 @@ module rbs_structure_frame_element
    !> Below the first the series of c is exact, below the second compression does nothing.
    real(wp), parameter :: small_x = 0.05_wp, no_compression = 1.0e-10_wp
 
-   !> Where the numbers of an element begin in the work array of all tangents of a frame.
-   type :: tangent_layout
-      !> K (3, 3), and behind it the state: 0 before the tangent is found, 2 if springs without stiffness
-      !> share a motion, else 1, and with a minus sign where the element snaps back
-      integer :: stiffness = 1
-      !> Deformations per motion of the ends, dd/dq (3, springs); of joints of layers see `layered_tangent`
-      !> (of_joint, joints)
-      integer :: rate = 1
-      !> H of springs that bend, and of those that open
-      integer :: bent = 1, opened = 1
-      !> Stiffness of the springs that the tangent belongs to (springs)
-      integer :: branch = 1
-   end type tangent_layout
+   !> A spring in an element, or a joint of layers.
+   type :: element_joint
+      !> First and last spring in the element
+      integer :: first = 0, last = 0
+      logical :: is_single = .true.
+      !> Coordinate of its deformation, or of the opening before that of the rotation
+      integer :: motion = 0
+      !> The condensed spring that it is, or the first of the two
+      integer :: spring = 0
+      !> Motion of the ends by its deformation, or by w and theta: forces of it by axial force and end moments
+      real(wp) :: arm(3, 2) = 0.0_wp
+      !> y_0 and rho [m], and the motion of the ends by the opening at y_0 and by rho theta
+      real(wp) :: centre = 0.0_wp, radius = 1.0_wp, about_centre(3, 2) = 0.0_wp
+      !> Moment of the dead load in its layers [N m]
+      real(wp) :: dead_moment = 0.0_wp
+   end type element_joint
 
    type :: frame_element
       !> The nodes at its ends
@@ -75,9 +60,16 @@ module rbs_structure_frame_element
       integer :: unknown(6) = 1
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
       integer :: before = 0, bending = 0, opening = 0
-      !> Moments of the ends per force of a spring, p, of those that bend, then of the elastic rest
-      !> (2, bending + rest)
-      real(wp), allocatable :: share(:, :)
+      type(element_joint), allocatable :: joint(:)
+      !> Distances of layers from the middle of their joint (springs) [m]
+      real(wp), allocatable :: y(:)
+      !> Condensed springs before those of the rest; their initial stiffness in size (inner), and one against
+      !> each motion of the ends
+      integer :: inner = 0
+      real(wp), allocatable :: initial(:)
+      !> Their coordinates: those of the motion of their joint (inner)
+      integer, allocatable :: place(:)
+      real(wp) :: weight(3) = 0.0_wp
       !> Stiffness of the elastic rest in its two directions, and along the axis; none, if it is rigid
       real(wp), allocatable :: rest(:)
       real(wp) :: rest_along = 0.0_wp
@@ -97,29 +89,16 @@ module rbs_structure_frame_element
       !> rotations of its ends when it is built
       logical :: pinned = .false., after_dead_load = .false.
       real(wp) :: built_at(3) = 0.0_wp
-      type(tangent_layout) :: layout
-      !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); motion
-      !> (w, theta) of each by axial force and end moments (3, 2, joints); distances of the layers
-      !> (springs) [m]
-      logical :: layered = .false.
-      integer, allocatable :: first(:)
-      !> Coordinate of the opening of each, before that of its rotation, or of its one deformation; whether it
-      !> is one spring; moment of the dead load in its layers (joints)
-      integer, allocatable :: motion(:)
-      logical, allocatable :: is_single(:)
-      real(wp), allocatable :: dead_moment(:)
-      real(wp), allocatable :: arm(:, :, :), y(:)
    contains
       procedure :: leave_out_supports
       procedure :: disconnect
-      procedure :: lay_out
+      procedure :: set_initial
+      procedure :: condensed
+      procedure :: inner_springs
       procedure :: bend_as_springs
       procedure :: set_rest
       procedure :: buckles
    end type frame_element
-
-   !> Numbers of a joint of layers in a tangent.
-   integer, parameter :: joint_numbers = 6
 
 contains
 
@@ -159,10 +138,11 @@ contains
 
       if (self%is_panel .or. self%flexural_rigidity > 0.0_wp) return
       off_chord = 0.0_wp
-      do j = 1, self%bending
-         associate (p => self%share(:, j))
+      do j = 1, size(self%joint)
+         if (.not. self%joint(j)%is_single) cycle
+         associate (p => self%joint(j)%arm(2:, 1))
             ! A slip leaves the ends as they are.
-            off_chord = off_chord - p(1)*p(2)*(p(2) - p(1))/k(self%before + j)
+            off_chord = off_chord - p(1)*p(2)*(p(2) - p(1))/k(self%before + self%joint(j)%first)
          end associate
       end do
       if (.not. off_chord > 0.0_wp) return
@@ -176,11 +156,9 @@ contains
       class(frame_element), intent(inout) :: self
       !> Axial force that does second-order work, compression positive [N]
       real(wp), intent(in) :: compression
-      real(wp) :: springs(2, self%bending), c, x, flexible(2), added
+      real(wp) :: c, x, flexible(2), added
 
       self%dead_rotation = 0.0_wp
-      springs = self%share(:, :self%bending)
-      self%share = springs
       if (allocated(self%rest)) deallocate (self%rest)
       if (.not. self%flexural_rigidity > 0.0_wp) return
       x = compression*self%length**2/self%flexural_rigidity/4.0_wp
@@ -197,7 +175,6 @@ contains
       if (self%shear_rigidity > 0.0_wp) flexible(1) = flexible(1) + 1.0_wp/(self%length*self%shear_rigidity)
       self%rest = 1.0_wp/flexible
       self%dead_rotation = [1.0_wp, -1.0_wp]*added*self%load_across*self%length**3/self%flexural_rigidity
-      self%share = reshape([springs, 1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp], [2, self%bending + 2])
    end subroutine set_rest
 
    !> Whether it buckles under compression [N] where its ends are clamped, or between its pins.
@@ -229,281 +206,103 @@ contains
       end if
    end function shape_of
 
-   !> Place the tangent of an element behind others in their work array.
-   pure subroutine lay_out(self, numbers)
+   !> Initial stiffness of the condensed springs.
+   pure subroutine set_initial(self, k)
       class(frame_element), intent(inout) :: self
-      !> In the work array, so far and with this element
-      integer, intent(inout) :: numbers
-
-      associate (layout => self%layout, m => self%bending, n => self%opening)
-         layout%stiffness = numbers + 1
-         layout%rate = layout%stiffness + 10
-         if (self%layered) then
-            layout%branch = layout%rate + joint_numbers*(size(self%first) - 1)
-         else
-            layout%bent = layout%rate + 3*(m + n)
-            layout%opened = layout%bent + m**2
-            layout%branch = layout%opened + n**2
-         end if
-         numbers = layout%branch + m + n - 1
-      end associate
-   end subroutine lay_out
-
-   !> Stiffness and rates on lines of the springs.
-   pure subroutine find_tangent(element, m, n, k, k0, stiffness, rate, bent, opened, stable, shares)
-      type(frame_element), intent(in) :: element
-      !> Numbers of springs that bend, and that open
-      integer, intent(in) :: m, n
-      !> Present and initial stiffness of the springs of the element, those that bend first
-      real(wp), intent(in) :: k(m + n), k0(m + n)
-      !> K, dd/dq, and H of both
-      real(wp), intent(out) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> Whether the motion of the ends determines that inside: the element does not snap back; whether
-      !> springs without stiffness share a motion
-      logical, intent(out) :: stable, shares
-      real(wp) :: of_ends(2, 2), of_rotations(2, m), open_up(n)
-      logical :: stable_along
-
-      call bend(size(element%share, 2), m, element%share, [k0(:m), rest_of(element)], &
-                [k(:m), rest_of(element)], of_ends, of_rotations, bent, stable, shares)
-      call elongate(n, element%rest_along, k0(m + 1:), k(m + 1:), stiffness(1, 1), open_up, opened, &
-                   stable_along)
-      stiffness(2:, 1) = 0.0_wp
-      stiffness(1, 2:) = 0.0_wp
-      stiffness(2:, 2:) = of_ends
-      rate = 0.0_wp
-      rate(2:, :m) = of_rotations
-      rate(1, m + 1:) = open_up
-      stable = stable .and. stable_along
-   end subroutine find_tangent
-
-   !> Forces of the ends that are in equilibrium with forces of the springs, and the corrections of their
-   !> deformations that this needs.
-   pure subroutine find_forces(e, m, n, stiffness, rate, bent, opened, misfit, f, dead, dead_force, s, &
-                               correction)
-      type(frame_element), intent(in) :: e
-      !> Numbers of springs that bend, and that open
-      integer, intent(in) :: m, n
-      !> Of `find_tangent`
-      real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> The misfit, motion of the ends less the deformations; forces of the springs, the share of
-      !> the dead load that acts, and its forces in them
-      real(wp), intent(in) :: misfit(3), f(m + n), dead, dead_force(m + n)
-      real(wp), intent(out) :: s(3), correction(m + n)
-      real(wp) :: force, left(3)
+      !> Of the springs of the element, initial (springs)
+      real(wp), intent(in), contiguous :: k(:)
+      real(wp) :: p(3, self%inner + 3), stiffness(self%inner + 3), flexible(3), turn(2, size(self%joint))
+      real(wp) :: sums(3)
       integer :: i, j
 
-      s = forces_inside(m + n, rate, f, dead, dead_force)
-      left = misfit - motion_of_rest(e, s)
-      do j = 1, m + n
-         correction(j) = rate(1, j)*left(1) + rate(2, j)*left(2) + rate(3, j)*left(3)
+      if (allocated(self%initial)) deallocate (self%initial)
+      allocate (self%initial(self%inner), source=0.0_wp)
+      allocate (self%place(self%inner), source=0)
+      do j = 1, size(self%joint)
+         associate (of => self%joint(j))
+            self%place(of%spring) = of%motion
+            self%initial(of%spring) = abs(k(of%first))
+            of%about_centre = of%arm
+            if (of%is_single) cycle
+            self%place(of%spring + 1) = of%motion + 1
+            sums = stiffness_sums(of%last - of%first + 1, self%y(of%first:of%last), k(of%first:of%last))
+            of%centre = sums(2)/sums(1)
+            of%radius = sqrt(sum(k(of%first:of%last)*(self%y(of%first:of%last) - of%centre)**2)/sums(1))
+            of%about_centre(:, 2) = (of%arm(:, 2) - of%centre*of%arm(:, 1))/of%radius
+            self%initial(of%spring:of%spring + 1) = sums(1)
+         end associate
       end do
-      do j = 1, m
-         force = unbalance(f(j) - dead*dead_force(j), 0.0_wp, e%share(1, j)*s(2), e%share(2, j)*s(3))
-         do i = 1, m
-            correction(i) = correction(i) - bent(i, j)*force
-         end do
+      call self%inner_springs(size(k), k, p, stiffness, turn)
+      flexible = 0.0_wp
+      do i = 1, self%condensed()
+         flexible = flexible + p(:, i)**2/abs(stiffness(i))
       end do
-      do j = 1, n
-         force = unbalance(f(m + j) - dead*dead_force(m + j), s(1), 0.0_wp, 0.0_wp)
-         do i = 1, n
-            correction(m + i) = correction(m + i) - opened(i, j)*force
-         end do
-      end do
-      s = s + forces_of(stiffness, misfit)
-   end subroutine find_forces
+      self%weight = 0.0_wp
+      where (flexible > 0.0_wp) self%weight = 1.0_wp/flexible
+   end subroutine set_initial
 
-   !> Forces of the ends alone.
-   pure function end_forces(m, stiffness, rate, misfit, f, dead_force) result(s)
-      !> See `find_forces`, under all of the dead load
-      integer, intent(in) :: m
-      real(wp), intent(in) :: stiffness(3, 3), rate(3, m), misfit(3), f(m), dead_force(m)
-      real(wp) :: s(3)
+   !> Number of condensed springs with those of the elastic rest.
+   pure integer function condensed(self)
+      class(frame_element), intent(in) :: self
 
-      s = forces_inside(m, rate, f, 1.0_wp, dead_force) + forces_of(stiffness, misfit)
-   end function end_forces
+      condensed = self%inner
+      if (self%rest_along > 0.0_wp) condensed = condensed + 1
+      if (allocated(self%rest)) condensed = condensed + size(self%rest)
+   end function condensed
 
-   !> Forces of the ends that forces of springs without the dead load make where the ends are held.
-   pure function forces_inside(m, rate, f, dead, dead_force) result(s)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: rate(3, m), f(m), dead, dead_force(m)
-      real(wp) :: s(3)
-      integer :: j
-
-      s = 0.0_wp
-      do j = 1, m
-         s = s + rate(:, j)*(f(j) - dead*dead_force(j))
-      end do
-   end function forces_inside
-
-   pure function forces_of(stiffness, misfit) result(s)
-      real(wp), intent(in) :: stiffness(3, 3), misfit(3)
-      real(wp) :: s(3)
-
-      s = stiffness(:, 1)*misfit(1) + stiffness(:, 2)*misfit(2) + stiffness(:, 3)*misfit(3)
-   end function forces_of
-
-   !> Motion of the ends that forces of the ends make in the elastic rest.
-   pure function motion_of_rest(e, s) result(q)
-      type(frame_element), intent(in) :: e
-      real(wp), intent(in) :: s(3)
-      real(wp) :: q(3), alike, against
-
-      q = 0.0_wp
-      if (e%rest_along > 0.0_wp) q(1) = s(1)/e%rest_along
-      if (.not. allocated(e%rest)) return
-      alike = (s(2) + s(3))/e%rest(1)
-      against = (s(2) - s(3))/e%rest(2)
-      q(2:) = [alike + against, alike - against]
-   end function motion_of_rest
-
-   !> Force of a spring or joint less the effect of end forces there, term by term. Round-off of it is none:
-   !> a joint all but without stiffness would move far for it, and back in the next trial.
-   pure real(wp) function unbalance(force, first, second, third)
-      real(wp), intent(in) :: force, first, second, third
-
-      unbalance = force - (first + second + third)
-      associate (terms => abs(force) + (abs(first) + abs(second) + abs(third)))
-         if (abs(unbalance) <= round_off*terms) unbalance = 0.0_wp
-      end associate
-   end function unbalance
-
-   !> Changes of the deformations with those of the ends.
-   pure subroutine find_rates(springs, rate, q, dd)
+   !> Rows and stiffness of the condensed springs for a stiffness of the springs.
+   pure subroutine inner_springs(self, springs, k, p, stiffness, turn)
+      class(frame_element), intent(in) :: self
       integer, intent(in) :: springs
-      real(wp), intent(in) :: rate(3, springs), q(3)
-      real(wp), intent(out) :: dd(springs)
-      integer :: j
-
-      do j = 1, springs
-         dd(j) = rate(1, j)*q(1) + rate(2, j)*q(2) + rate(3, j)*q(3)
-      end do
-   end subroutine find_rates
-
-   pure function rest_of(element) result(rest)
-      type(frame_element), intent(in) :: element
-      real(wp) :: rest(size(element%share, 2) - element%bending)
-
-      if (size(rest) > 0) rest = element%rest
-   end function rest_of
-
-   pure subroutine bend(all, m, p, k0, k, stiffness, rate, bent, stable, shares)
-      !> Springs with the elastic rest, springs
-      integer, intent(in) :: all, m
-      real(wp), intent(in) :: p(2, all), k0(all), k(all)
-      real(wp), intent(out) :: stiffness(2, 2), rate(2, m), bent(m, m)
-      logical, intent(out) :: stable, shares
-      !> Moments over roots of the initial stiffness, and stiffness over the initial one
-      real(wp) :: share(2, all), soft(all), across(2, all), determinant, initial, root(all)
-      integer :: i, j, l
-
-      root = sqrt(abs(k0))
-      do i = 1, all
-         share(:, i) = p(:, i)/root(i)
-         across(:, i) = [-share(2, i), share(1, i)]
-      end do
-      soft = k/abs(k0)
-      initial = determinant_of(spread(1.0_wp, 1, all))
-      determinant = determinant_of(soft)
-      stable = determinant > -no_stiffness*initial
-      stiffness = 0.0_wp
-      do i = 1, all
-         do j = 1, 2
-            stiffness(:, j) = stiffness(:, j) + others([i])*across(:, i)*across(j, i)
-         end do
-      end do
-      shares = abs(determinant) <= no_stiffness*initial
-      if (shares) then
-         ! More springs than the ends determine have no stiffness.
-         soft = merge(shared, soft, abs(soft) < shared)
-         determinant = determinant_of(soft)
-      end if
-      stiffness = stiffness/determinant
-      rate = 0.0_wp
-      bent = 0.0_wp
-      do j = 1, m
-         do i = 1, all
-            if (i /= j) rate(:, j) = rate(:, j) + cross(i, j)*others([i, j])*across(:, i)
-         end do
-         rate(:, j) = rate(:, j)/(determinant*root(j))
-         do i = 1, m
-            do l = 1, all
-               if (l /= i .and. l /= j .and. i /= j) then
-                  bent(i, j) = bent(i, j) - cross(l, i)*cross(l, j)*others([i, j, l])
-               end if
-            end do
-         end do
-         do i = 1, all
-            do l = i + 1, all
-               if (i /= j .and. l /= j) bent(j, j) = bent(j, j) + cross(i, l)**2*others([i, j, l])
-            end do
-         end do
-         bent(:, j) = bent(:, j)/(determinant*root(j)*root(:m))
-      end do
-
-   contains
-
-      pure real(wp) function cross(a, b)
-         integer, intent(in) :: a, b
-
-         cross = share(1, a)*share(2, b) - share(2, a)*share(1, b)
-      end function cross
-
-      !> Product of the stiffness of all but some.
-      pure real(wp) function others(some)
-         integer, intent(in) :: some(:)
-         integer :: a
-
-         others = 1.0_wp
-         do a = 1, all
-            if (.not. any(some == a)) others = others*soft(a)
-         end do
-      end function others
-
-      pure real(wp) function determinant_of(stiff) result(total)
-         real(wp), intent(in) :: stiff(all)
-         integer :: a, b, c
-         real(wp) :: product_of_others
-
-         total = 0.0_wp
-         do b = 2, all
-            do a = 1, b - 1
-               product_of_others = 1.0_wp
-               do c = 1, all
-                  if (c /= a .and. c /= b) product_of_others = product_of_others*stiff(c)
-               end do
-               total = total + cross(a, b)**2*product_of_others
-            end do
-         end do
-      end function determinant_of
-
-   end subroutine bend
-
-   !> Springs that open, one behind the other, and the elastic rest.
-   pure subroutine elongate(n, rest, k0, k, stiffness, rate, opened, stable)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: rest, k0(n), k(n)
-      real(wp), intent(out) :: stiffness, rate(n), opened(n, n)
-      logical, intent(out) :: stable
-      real(wp) :: flexible
+      real(wp), intent(in) :: k(springs)
+      !> (3, condensed), (condensed); cosine and sine of the axes of a joint of layers (2, joints)
+      real(wp), intent(out) :: p(:, :), stiffness(:), turn(:, :)
       integer :: i, j
 
-      stable = .true.
-      stiffness = rest
-      if (n == 0) return
-      associate (least => shared*no_stiffness*k0)
-         flexible = sum(1.0_wp/sign(max(abs(k), least), k))
-         if (rest > 0.0_wp) flexible = flexible + 1.0_wp/rest
-         stable = flexible > 0.0_wp
-         stiffness = 1.0_wp/flexible
-         rate = 1.0_wp/(sign(max(abs(k), least), k)*flexible)
-         do j = 1, n
-            do i = 1, n
-               opened(i, j) = -rate(i)*rate(j)*flexible
-            end do
-            opened(j, j) = opened(j, j) + rate(j)*flexible
-         end do
-      end associate
-   end subroutine elongate
+      do j = 1, size(self%joint)
+         associate (of => self%joint(j), at => self%joint(j)%spring)
+            if (of%is_single) then
+               p(:, at) = of%arm(:, 1)
+               stiffness(at) = k(of%first)
+               cycle
+            end if
+            call find_axes(of%last - of%first + 1, self%y(of%first:of%last), k(of%first:of%last), of%centre, &
+                           of%radius, stiffness(at:at + 1), turn(:, j))
+            p(:, at) = turn(1, j)*of%about_centre(:, 1) + turn(2, j)*of%about_centre(:, 2)
+            p(:, at + 1) = turn(1, j)*of%about_centre(:, 2) - turn(2, j)*of%about_centre(:, 1)
+         end associate
+      end do
+      i = self%inner
+      if (self%rest_along > 0.0_wp) then
+         i = i + 1
+         p(:, i) = [1.0_wp, 0.0_wp, 0.0_wp]
+         stiffness(i) = self%rest_along
+      end if
+      if (allocated(self%rest)) then
+         p(:, i + 1) = [0.0_wp, 1.0_wp, 1.0_wp]
+         p(:, i + 2) = [0.0_wp, 1.0_wp, -1.0_wp]
+         stiffness(i + 1:i + 2) = self%rest
+      end if
+   end subroutine inner_springs
+
+   !> Stiffness of a joint of layers along its two axes, and their directions.
+   pure subroutine find_axes(n, y, k, centre, radius, stiffness, turn)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: y(n), k(n), centre, radius
+      real(wp), intent(out) :: stiffness(2), turn(2)
+      real(wp) :: sums(3), across, ratio, tangent
+
+      sums = stiffness_sums(n, (y - centre)/radius, k)
+      across = sums(2)
+      stiffness = [sums(1), sums(3)]
+      turn = [1.0_wp, 0.0_wp]
+      if (.not. abs(across) > epsilon(1.0_wp)*maxval(abs(stiffness))) return
+      ! Jacobi's rotation: the smaller angle.
+      ratio = (sums(3) - sums(1))/(2.0_wp*across)
+      tangent = sign(1.0_wp, ratio)/(abs(ratio) + hypot(1.0_wp, ratio))
+      turn(1) = 1.0_wp/hypot(1.0_wp, tangent)
+      turn(2) = -tangent*turn(1)
+      stiffness = [sums(1) - tangent*across, sums(3) + tangent*across]
+   end subroutine find_axes
 
 end module rbs_structure_frame_element

@@ -2,13 +2,13 @@
 !> balance its springs, its second-order forces and its elastic energy.
 module rbs_structure_frame_element_balance
    use rbs_base_kinds, only: wp
-   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent
-   use rbs_structure_frame_layered, only: drop_small_rates, layered_forces, layered_rates, layered_tangent, &
-                                          take_joints_off
+   use rbs_structure_condensation, only: series_tangent
+   use rbs_structure_frame_element, only: frame_element, element_joint
    implicit none
    private
 
-   public :: end_motion, motion_terms, chord_rotation, compatibility_error, set_tangent, balance_ends
+   public :: end_motion, motion_terms, chord_rotation, compatibility_error, set_tangent, balance_ends, &
+             balance_of_ends
    public :: add_end_forces, add_second_order, add_band, add_geometric_band
    public :: spring_motion, clear_round_off, energy_of_rest
 
@@ -80,90 +80,126 @@ contains
 
       misfit = q - e%built_at
       misfit(2:) = misfit(2:) - dead*e%dead_rotation
-      if (e%layered) then
-         call take_joints_off(size(e%motion), e%motion, e%is_single, e%arm, d, misfit)
-         return
-      end if
-      do j = 1, e%bending
-         misfit(2) = misfit(2) - e%share(1, j)*d(e%before + j)
-         misfit(3) = misfit(3) - e%share(2, j)*d(e%before + j)
-      end do
-      do j = e%bending + 1, e%bending + e%opening
-         misfit(1) = misfit(1) - d(e%before + j)
+      do j = 1, size(e%joint)
+         associate (of => e%joint(j))
+            misfit = misfit - of%arm(:, 1)*d(of%motion)
+            if (.not. of%is_single) misfit = misfit - of%arm(:, 2)*d(of%motion + 1)
+         end associate
       end do
    end function compatibility_error
 
    !> Tangent of an element on the present lines of its springs. The springs of the last tangent are kept
    !> with it, so that it is only found again where their stiffness has changed.
-   pure subroutine set_tangent(e, springs, numbers, k, k0, tangent, stable)
+   pure subroutine set_tangent(e, springs, k, tangent)
       type(frame_element), intent(in) :: e
-      !> Number of springs of the element, and of numbers in all tangents
-      integer, intent(in) :: springs, numbers
-      !> Present and initial stiffness of its springs
-      real(wp), intent(in) :: k(springs), k0(springs)
-      real(wp), intent(inout) :: tangent(numbers)
-      !> Whether the motion of the ends determines that inside
-      logical, intent(out) :: stable
+      !> Number of springs of the element, and their present stiffness
+      integer, intent(in) :: springs
+      real(wp), intent(in) :: k(springs)
+      type(series_tangent), intent(inout) :: tangent
       real(wp) :: change
-      integer :: j
-      logical :: shares
+      integer :: j, spared
 
-      stable = .true.
-      shares = .false.
-      associate (layout => e%layout, m => e%bending, n => e%opening)
-         associate (known => tangent(layout%branch:layout%branch + springs - 1), &
-                    state => tangent(layout%rate - 1))
-            change = 0.0_wp
-            !$omp simd reduction(max:change)
-            do j = 1, springs
-               change = max(change, abs(tangent(layout%branch + j - 1) - k(j)))
-            end do
-            if (state > 0.0_wp .and. .not. change > 0.0_wp) return
-            if (e%is_panel) then
-               tangent(layout%stiffness:layout%branch - 1) = 0.0_wp
-               tangent(layout%stiffness) = k(1)
-               tangent(layout%rate) = 1.0_wp
-            else if (e%layered) then
-               call layered_tangent(e, springs, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
-                                    stable, shares)
-            else
-               call find_tangent(e, m, n, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
-                                 tangent(layout%bent:), tangent(layout%opened:), stable, shares)
-            end if
-            state = merge(2.0_wp, 1.0_wp, shares)
-            ! That it snaps back is to be found again.
-            if (.not. stable) state = -state
-            known = k
-         end associate
-      end associate
+      if (tangent%is_known) then
+         change = 0.0_wp
+         !$omp simd reduction(max:change)
+         do j = 1, springs
+            change = max(change, abs(tangent%branch(j) - k(j)))
+         end do
+         if (.not. change > 0.0_wp) return
+      end if
+      tangent%branch = k
+      call e%inner_springs(springs, k, tangent%p, tangent%k, tangent%turn)
+      tangent%k0(:e%inner) = e%initial
+      tangent%k0(e%inner + 1:) = abs(tangent%k(e%inner + 1:))
+      spared = 0
+      ! Under tension a rest that takes off flexibility of springs is none of its own; beyond Euler's load
+      ! it is.
+      if (allocated(e%rest) .and. .not. e%compression > 0.0_wp) spared = count(e%rest < 0.0_wp)
+      call tangent%condense(e%condensed(), e%weight, spared)
    end subroutine set_tangent
 
    !> Forces of the ends of an element in equilibrium with its springs, and the corrections of their
    !> deformations that this needs.
-   pure subroutine balance_ends(e, springs, numbers, misfit, dead, dead_force, f, tangent, s, correction)
+   pure subroutine balance_ends(e, springs, misfit, dead, dead_force, f, tangent, s, correction)
       type(frame_element), intent(in) :: e
-      !> Numbers of springs in the frame, and of numbers in all tangents
-      integer, intent(in) :: springs, numbers
+      !> Number of springs in the frame
+      integer, intent(in) :: springs
       !> Of `compatibility_error`; share of the dead load that acts; forces that all of it makes in springs
       real(wp), intent(in) :: misfit(3), dead, dead_force(springs)
       !> Forces of all springs
-      real(wp), intent(in) :: f(springs), tangent(numbers)
+      real(wp), intent(in) :: f(springs)
+      type(series_tangent), intent(in) :: tangent
       real(wp), intent(out) :: s(3)
       !> (coordinates)
       real(wp), intent(inout), contiguous :: correction(:)
+      integer :: j
 
-      associate (layout => e%layout, m => e%bending, n => e%opening, first => e%before + 1)
-         if (e%layered) then
-            call layered_forces(e, size(e%motion), m + n, size(correction), e%first, e%motion, e%is_single, &
-                                e%arm, e%dead_moment, tangent(layout%stiffness:), tangent(layout%rate:), &
-                                misfit, f(first:), dead, dead_force(first:), s, correction)
-         else
-            call find_forces(e, m, n, tangent(layout%stiffness:), tangent(layout%rate:), &
-                             tangent(layout%bent:), tangent(layout%opened:), misfit, f(first:), dead, &
-                             dead_force(first:), s, correction(first:))
-         end if
-      end associate
+      do j = 1, size(e%joint)
+         associate (of => e%joint(j), i => e%before + e%joint(j)%first, at => e%joint(j)%motion)
+            if (of%is_single) then
+               correction(at) = f(i) - dead*dead_force(i)
+            else
+               correction(at:at + 1) = pair_forces(of, f(i:i + 1), dead, tangent%turn(:, j))
+            end if
+         end associate
+      end do
+      call tangent%correct(e%condensed(), e%place, misfit, s, correction)
+      if (allocated(e%y)) call turn_pairs(e, tangent, correction)
    end subroutine balance_ends
+
+   !> The forces of the ends alone, under all of the dead load.
+   pure function balance_of_ends(e, springs, misfit, dead_force, f, tangent) result(s)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: springs
+      real(wp), intent(in) :: misfit(3), dead_force(springs), f(springs)
+      type(series_tangent), intent(in) :: tangent
+      real(wp) :: s(3), pair(2)
+      integer :: j
+
+      associate (k => tangent%stiffness, rate => tangent%rate)
+         s = k(:, 1)*misfit(1) + k(:, 2)*misfit(2) + k(:, 3)*misfit(3)
+         do j = 1, size(e%joint)
+            associate (of => e%joint(j), i => e%before + e%joint(j)%first, at => e%joint(j)%spring)
+               if (of%is_single) then
+                  s = s + rate(:, at)*(f(i) - dead_force(i))
+               else
+                  pair = pair_forces(of, f(i:i + 1), 1.0_wp, tangent%turn(:, j))
+                  s = s + rate(:, at)*pair(1) + rate(:, at + 1)*pair(2)
+               end if
+            end associate
+         end do
+      end associate
+   end function balance_of_ends
+
+   !> Forces along the axes of a joint of layers, without those of the dead load.
+   pure function pair_forces(joint, f, dead, turn) result(along)
+      type(element_joint), intent(in) :: joint
+      !> Axial force and moment, share of the dead load, direction of the axes
+      real(wp), intent(in) :: f(2), dead, turn(2)
+      real(wp) :: along(2), moment
+
+      moment = ((f(2) - dead*joint%dead_moment) - joint%centre*f(1))/joint%radius
+      along = [turn(1)*f(1) + turn(2)*moment, turn(1)*moment - turn(2)*f(1)]
+   end function pair_forces
+
+   !> Openings and rotations of the joints of layers from the motions along their axes.
+   pure subroutine turn_pairs(e, tangent, d)
+      type(frame_element), intent(in) :: e
+      type(series_tangent), intent(in) :: tangent
+      !> (coordinates)
+      real(wp), intent(inout), contiguous :: d(:)
+      real(wp) :: along(2)
+      integer :: j
+
+      do j = 1, size(e%joint)
+         associate (of => e%joint(j), at => e%joint(j)%motion, turn => tangent%turn(:, j))
+            if (of%is_single) cycle
+            along = d(at:at + 1)
+            d(at + 1) = (turn(2)*along(1) + turn(1)*along(2))/of%radius
+            d(at) = (turn(1)*along(1) - turn(2)*along(2)) - of%centre*d(at + 1)
+         end associate
+      end do
+   end subroutine turn_pairs
 
    !> Add the forces on the unknowns by axial force and end moments of an element.
    pure subroutine add_end_forces(e, s, g)
@@ -250,46 +286,63 @@ contains
       end do
    end subroutine add_product
 
-   !> Changes of the deformations of springs with those of the ends of their element.
-   pure subroutine spring_motion(e, springs, numbers, tangent, q, dd)
+   !> Changes of deformations, openings and rotations with those of the ends of their element.
+   pure subroutine spring_motion(e, tangent, q, d)
       type(frame_element), intent(in) :: e
-      integer, intent(in) :: springs, numbers
-      real(wp), intent(in) :: tangent(numbers), q(3)
-      real(wp), intent(inout) :: dd(springs)
+      type(series_tangent), intent(in) :: tangent
+      real(wp), intent(in) :: q(3)
+      !> (coordinates)
+      real(wp), intent(inout), contiguous :: d(:)
+      integer :: j
 
-      associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
-         if (e%layered) then
-            call layered_rates(size(e%motion), size(dd), e%motion, e%is_single, e%arm, &
-                               tangent(layout%stiffness:), tangent(layout%rate:), q, dd)
-         else
-            call find_rates(m, tangent(layout%rate:), q, dd(first:))
-         end if
-      end associate
+      do j = 1, e%inner
+         associate (rate => tangent%rate(:, j))
+            d(e%place(j)) = rate(1)*q(1) + rate(2)*q(2) + rate(3)*q(3)
+         end associate
+      end do
+      if (allocated(e%y)) call turn_pairs(e, tangent, d)
    end subroutine spring_motion
 
-   !> Take rates that are round-off of their terms for zero.
-   pure subroutine clear_round_off(e, springs, numbers, tangent, size_of, dd)
+   !> Take rates of springs that are round-off of their terms for zero.
+   pure subroutine clear_round_off(e, tangent, size_of, d)
       type(frame_element), intent(in) :: e
-      integer, intent(in) :: springs, numbers
+      type(series_tangent), intent(in) :: tangent
       !> Sizes of the motion of the ends, see `motion_terms`
-      real(wp), intent(in) :: tangent(numbers), size_of(3)
-      real(wp), intent(inout) :: dd(springs)
-      integer :: at, j
+      real(wp), intent(in) :: size_of(3)
+      !> (springs)
+      real(wp), intent(inout) :: d(:)
+      real(wp) :: least, across, opening, tilt
+      integer :: j
 
-      associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
-         if (e%layered) then
-            call drop_small_rates(e, m, tangent(layout%stiffness:), tangent(layout%rate:), size_of, &
-                                            round_off, dd(first:))
-            return
-         end if
-         do j = 1, m
-            at = layout%rate + 3*(j - 1)
-            associate (rate => dd(e%before + j))
-               if (abs(rate) < round_off*sum(abs(tangent(at:at + 2))*size_of)) rate = 0.0_wp
-            end associate
-         end do
-      end associate
+      do j = 1, size(e%joint)
+         associate (of => e%joint(j), at => e%joint(j)%spring, i => e%before + e%joint(j)%first)
+            least = round_off*sum(abs(tangent%rate(:, at))*size_of)
+            if (of%is_single) then
+               if (abs(d(i)) < least) d(i) = 0.0_wp
+            else
+               across = round_off*sum(abs(tangent%rate(:, at + 1))*size_of)
+               associate (last => e%before + of%last, turn => abs(tangent%turn(:, j)))
+                  opening = turn(1)*least + turn(2)*across
+                  tilt = (turn(2)*least + turn(1)*across)/of%radius
+                  call drop_below(last - i + 1, e%y(of%first:of%last), opening + abs(of%centre)*tilt, tilt, &
+                                  d(i:last))
+               end associate
+            end if
+         end associate
+      end do
    end subroutine clear_round_off
+
+   pure subroutine drop_below(n, y, opening, tilt, d)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: y(n), opening, tilt
+      real(wp), intent(inout) :: d(n)
+      integer :: i
+
+      !$omp simd
+      do i = 1, n
+         d(i) = merge(0.0_wp, d(i), abs(d(i)) < opening + abs(y(i))*tilt)
+      end do
+   end subroutine drop_below
 
    !> Energy of the elastic rest of an element [J].
    pure real(wp) function energy_of_rest(e, misfit) result(energy)

@@ -8,10 +8,12 @@ module rbs_structure_frame_frame
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_condensation, only: series_tangent
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_frame_element, only: frame_element, end_forces
+   use rbs_structure_frame_element, only: frame_element
    use rbs_structure_frame_element_balance, only: end_motion, motion_terms, compatibility_error, &
-                                                  set_tangent, balance_ends, add_end_forces, &
+                                                  set_tangent, balance_ends, balance_of_ends, &
+                                                  add_end_forces, &
                                                   add_second_order, add_band, add_geometric_band, &
                                                   spring_motion, clear_round_off
    use rbs_structure_frame_frame_record, only: name_length
@@ -221,39 +223,33 @@ contains
       class(frame_type), intent(in) :: self
       !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
-      !> Zero or the last ones: elements whose springs have the same stiffness keep theirs (tangent_numbers)
-      real(wp), intent(inout), contiguous :: tangent(:)
+      !> Elements whose springs have the stiffness of their last tangent keep it (elements)
+      type(series_tangent), intent(inout) :: tangent(:)
       !> An element that snaps back; 0: none
       integer, intent(out) :: unstable
       logical, intent(out), optional :: shares
       integer :: i
-      logical :: stable
 
-      unstable = 0
-      if (present(shares)) shares = .false.
       do i = 1, size(self%element)
-         associate (e => self%element(i), first => self%element(i)%before + 1)
-            call set_tangent(e, e%bending + e%opening, size(tangent), k(first:), &
-                             self%initial_stiffness(first:), tangent, stable)
+         associate (e => self%element(i))
+            call set_tangent(e, e%bending + e%opening, k(e%before + 1:), tangent(i))
          end associate
-         if (.not. stable) unstable = i
-         if (.not. present(shares)) cycle
-         if (abs(tangent(self%element(i)%layout%rate - 1)) > 1.0_wp) shares = .true.
       end do
+      unstable = findloc(tangent%snaps_back, .true., dim=1, back=.true.)
+      if (present(shares)) shares = any(tangent%is_mechanism)
    end subroutine linearise
 
    !> Stiffness of the elements, from their tangents, and of the ground.
    subroutine add_stiffness(self, k, tangent, band)
       class(frame_type), intent(in) :: self
       !> Of the springs (springs)
-      real(wp), intent(in), contiguous :: k(:), tangent(:)
+      real(wp), intent(in), contiguous :: k(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
       integer :: i
 
       do i = 1, size(self%element)
-         associate (at => self%element(i)%layout%stiffness)
-            call add_band(self%element(i), tangent(at:at + 8), band)
-         end associate
+         call add_band(self%element(i), tangent(i)%stiffness, band)
       end do
       band(1, self%ground) = band(1, self%ground) + k(self%member_springs + 1:)
    end subroutine add_stiffness
@@ -261,9 +257,10 @@ contains
    !> Damping of the modes, and in proportion to the stiffness of the elements, initial or present.
    subroutine damp(self, v, tangent, g)
       class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: v(:), tangent(:)
+      real(wp), intent(in), contiguous :: v(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: g(:)
-      real(wp) :: a(9), q(3)
+      real(wp) :: a(3, 3), q(3)
       integer :: i
 
       if (allocated(self%modal_momenta)) then
@@ -275,16 +272,16 @@ contains
       do i = 1, size(self%element)
          call damping_of(self, i, tangent, a)
          q = end_motion(self%element(i), v)
-         call add_end_forces(self%element(i), -(a(:3)*q(1) + a(4:6)*q(2) + a(7:)*q(3)), g)
+         call add_end_forces(self%element(i), -(a(:, 1)*q(1) + a(:, 2)*q(2) + a(:, 3)*q(3)), g)
       end do
    end subroutine damp
 
    subroutine add_damping(self, factor, tangent, band)
       class(frame_type), intent(in) :: self
       real(wp), intent(in) :: factor
-      real(wp), intent(in), contiguous :: tangent(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: a(9)
+      real(wp) :: a(3, 3)
       integer :: i
 
       do i = 1, size(self%element)
@@ -296,28 +293,26 @@ contains
    pure subroutine damping_of(frame, element, tangent, a)
       type(frame_type), intent(in) :: frame
       integer, intent(in) :: element
-      real(wp), intent(in) :: tangent(:)
-      real(wp), intent(out) :: a(9)
+      type(series_tangent), intent(in) :: tangent(:)
+      real(wp), intent(out) :: a(3, 3)
 
-      associate (at => frame%element(element)%layout%stiffness)
-         if (frame%tangent_damping) then
-            a = frame%stiffness_damping*tangent(at:at + 8)
-         else
-            a = frame%stiffness_damping*frame%initial_tangent(at:at + 8)
-         end if
-      end associate
+      if (frame%tangent_damping) then
+         a = frame%stiffness_damping*tangent(element)%stiffness
+      else
+         a = frame%stiffness_damping*frame%initial_tangent(element)%stiffness
+      end if
    end subroutine damping_of
 
    !> Changes of the deformations from those of the unknowns. Those of layers follow from their joints.
    subroutine spring_rates(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      type(series_tangent), intent(in) :: tangent(:)
+      real(wp), intent(in), contiguous :: dx(:)
       real(wp), intent(out), contiguous :: dd(:)
       integer :: i
 
       do i = 1, size(self%element)
-         call spring_motion(self%element(i), size(dd), self%tangent_numbers, tangent, &
-                            end_motion(self%element(i), dx), dd)
+         call spring_motion(self%element(i), tangent(i), end_motion(self%element(i), dx), dd)
       end do
       dd(self%member_springs + 1:self%springs) = dx(self%ground)
       dd(self%springs + 1:self%joints%before) = dx
@@ -328,7 +323,8 @@ contains
    !> its element, and of all elements, as displacements are round-off of each other.
    pure subroutine drop_round_off(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      type(series_tangent), intent(in) :: tangent(:)
+      real(wp), intent(in), contiguous :: dx(:)
       real(wp), intent(inout), contiguous :: dd(:)
       real(wp) :: largest(3), size_of(3)
       integer :: i
@@ -341,8 +337,8 @@ contains
          associate (e => self%element(i))
             size_of = motion_terms(e, dx)
             ! The share of a layer in a motion may be as small without being round-off.
-            if (.not. e%layered) size_of = max(size_of, of_all*largest)
-            call clear_round_off(e, size(dd), self%tangent_numbers, tangent, size_of, dd)
+            if (.not. allocated(e%y)) size_of = max(size_of, of_all*largest)
+            call clear_round_off(e, tangent(i), size_of, dd)
          end associate
       end do
    end subroutine drop_round_off
@@ -355,7 +351,7 @@ contains
       real(wp), intent(in) :: least
       real(wp), intent(out) :: force, terms, work
       real(wp) :: s(3), q(3), to_force(3), f(springs%count)
-      integer :: at, i
+      integer :: i
 
       to_force = [1.0_wp, 1.0_wp/self%total_height, 1.0_wp/self%total_height]
       force = maxval(abs(self%dead)/self%reach)
@@ -370,8 +366,7 @@ contains
                   force = max(force, maxval(abs(s)*to_force))
                end if
                q = motion_terms(e, max(abs(x), least*self%total_height/self%reach))
-               at = e%layout%stiffness
-               s = matmul(abs(reshape(self%initial_tangent(at:at + 8), [3, 3])), q)
+               s = matmul(abs(self%initial_tangent(i)%stiffness), q)
                terms = max(terms, maxval(s*to_force))
                work = work + sum(s*q)
             end associate
@@ -392,7 +387,8 @@ contains
    !> bring the inside of the elements to equilibrium.
    subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
       class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+      type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
@@ -408,8 +404,7 @@ contains
          do i = 1, size(self%element)
             associate (e => self%element(i))
                misfit = compatibility_error(e, end_motion(e, x), d, part)
-               call balance_ends(e, size(f), size(tangent), misfit, part, self%dead_force, f, tangent, s, &
-                                 correction)
+               call balance_ends(e, size(f), misfit, part, self%dead_force, f, tangent(i), s, correction)
                call add_end_forces(e, -s, g)
                if (self%axially_loaded .and. .not. e%is_panel) call add_second_order(e, x, g)
             end associate
@@ -426,19 +421,9 @@ contains
       real(wp), intent(out) :: s(3)
       real(wp) :: misfit(3)
 
-      associate (e => self%element(member), x => d(self%springs + 1:), tangent => self%initial_tangent)
+      associate (e => self%element(member), x => d(self%springs + 1:))
          misfit = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
-         if (e%layered) then
-            block
-               real(wp) :: correction(size(d))
-
-               call balance_ends(e, size(f), size(tangent), misfit, 1.0_wp, self%dead_force, f, tangent, s, &
-                                 correction)
-            end block
-         else
-            s = end_forces(e%bending + e%opening, tangent(e%layout%stiffness:), tangent(e%layout%rate:), &
-                           misfit, f(e%before + 1:), self%dead_force(e%before + 1:))
-         end if
+         s = balance_of_ends(e, size(f), misfit, self%dead_force, f, self%initial_tangent(member))
       end associate
    end subroutine member_forces
 

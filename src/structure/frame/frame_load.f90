@@ -19,7 +19,7 @@ contains
       self%dead_force = 0.0_wp
       do i = 1, self%members
          self%element(i)%dead_rotation = 0.0_wp
-         if (self%element(i)%layered) self%element(i)%dead_moment = 0.0_wp
+         self%element(i)%joint%dead_moment = 0.0_wp
       end do
    end procedure take_load_off
 
@@ -53,7 +53,8 @@ contains
             self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
          end associate
       end do
-      self%initial_tangent = 0.0_wp
+      ! The elastic rest has changed.
+      self%initial_tangent%is_known = .false.
       call self%linearise(self%initial_stiffness, self%initial_tangent, i)
    end procedure set_compression
 

@@ -65,10 +65,11 @@ contains
    end function has_failed
 
    module procedure remove_member
-      real(wp) :: tangent(self%tangent_numbers), correction(size(springs%d)), s(3), q(3), energy
-      integer :: i, unstable
+      type(series_tangent) :: tangent
+      real(wp) :: correction(size(springs%d)), s(3), q(3), energy
+      integer :: i
 
-      tangent = 0.0_wp
+      tangent = self%initial_tangent(member)
       correction = 0.0_wp
       associate (e => self%element(member))
          q = end_motion(e, springs%d(self%springs + 1:))
@@ -76,9 +77,9 @@ contains
          do i = e%before + 1, e%before + e%bending + e%opening
             call springs%release(i, self%dead_force(i))
          end do
-         call self%linearise(springs%k, tangent, unstable)
-         call balance_ends(e, springs%count, size(tangent), compatibility_error(e, q, springs%d, 1.0_wp), &
-                           1.0_wp, self%dead_force, springs%forces(springs%d), tangent, s, correction)
+         call set_tangent(e, e%bending + e%opening, springs%k(e%before + 1:), tangent)
+         call balance_ends(e, springs%count, compatibility_error(e, q, springs%d, 1.0_wp), 1.0_wp, &
+                           self%dead_force, springs%forces(springs%d), tangent, s, correction)
          correction = springs%d + correction
          call springs%joints%open_layers(correction)
          do i = e%before + 1, e%before + e%bending + e%opening

@@ -5,7 +5,7 @@ module rbs_structure_frame_new_frame
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
-   use rbs_structure_frame_element, only: frame_element
+   use rbs_structure_frame_element, only: frame_element, element_joint
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_frame_numbering, only: order_nodes
@@ -58,6 +58,9 @@ module rbs_structure_frame_new_frame
       !> `unset`: never
       real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset, lost_at = unset
    end type frame_member
+
+   !> Motion of the ends by the opening of a joint.
+   real(wp), parameter :: along_axis(3, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [3, 2])
 
 contains
 
@@ -118,7 +121,13 @@ contains
       call list_springs(frame)
       call add_rules(frame%rules, spring, frame%springs)
       frame%initial_stiffness = frame%rules%initial_stiffness()
-      allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
+      allocate (frame%initial_tangent(size(frame%element)))
+      do i = 1, size(frame%element)
+         associate (e => frame%element(i), springs => frame%element(i)%bending + frame%element(i)%opening)
+            call e%set_initial(frame%initial_stiffness(e%before + 1:e%before + springs))
+            call frame%initial_tangent(i)%create(e%inner + 3, springs, size(e%joint))
+         end associate
+      end do
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       do i = 1, frame%members
          call frame%element(i)%bend_as_springs(frame%initial_stiffness)
@@ -331,19 +340,15 @@ contains
                e%lumped = m%lumped
                e%pinned = m%pinned
                e%after_dead_load = m%after_dead_load
-               allocate (e%share(2, e%bending), source=0.0_wp)
                do j = 1, size(m%kind)
                   spring(before + j) = m%spring(j)
                   frame%position_ratio(before + j) = m%position(j)
                   frame%location(before + j) = spring_location(m%kind(j), i, m%joint(j), 0, 0, i, m%name)
                   if (m%kind(j) == shear) call assign_work_source(m, j, before, frame%location(before + j))
-                  if (m%kind(j) == flexure) e%share(:, j) = [m%position(j) - 1.0_wp, m%position(j)]
-                  if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
                end do
-               if (any(m%kind == layer)) call set_joints(e, m, clear, frame)
+               call set_joints(e, m, clear, frame)
                call put_load(frame, m, i, axis, clear)
                call frame%compress(i, 0.0_wp)
-               call e%lay_out(frame%tangent_numbers)
                before = before + size(m%kind)
             end associate
          end associate
@@ -388,9 +393,10 @@ contains
             call e%leave_out_supports()
             e%before = at - 1
             e%opening = 1
-            allocate (e%share(2, 0))
             e%is_panel = .true.
-            call e%lay_out(frame%tangent_numbers)
+            e%inner = 1
+            allocate (e%joint(1))
+            e%joint(1) = element_joint(first=1, last=1, motion=at, spring=1, arm=along_axis)
          end associate
          spring(at) = node(i)%panel
          frame%position_ratio(at) = 0.0_wp
@@ -410,40 +416,40 @@ contains
       end do
    end subroutine list_springs
 
-   !> Joints of an element some of which are of layers.
+   !> Joints of an element: its springs, those of layers together.
    subroutine set_joints(e, m, clear, frame)
       type(frame_element), intent(inout) :: e
       type(frame_member), intent(in) :: m
       real(wp), intent(in) :: clear
       type(frame_type), intent(in) :: frame
       real(wp) :: moment(3)
-      integer :: i, j, joints
+      integer :: i, j
 
-      e%layered = .true.
-      joints = maxval(m%joint)
-      e%y = m%y
-      allocate (e%first(joints + 1), e%motion(joints), e%is_single(joints), e%arm(3, 2, joints))
-      allocate (e%dead_moment(joints), source=0.0_wp)
-      e%first(joints + 1) = size(m%kind) + 1
-      e%arm = 0.0_wp
-      do j = 1, joints
+      if (any(m%kind == layer)) e%y = m%y
+      allocate (e%joint(maxval([0, m%joint])))
+      do j = 1, size(e%joint)
          i = findloc(m%joint, j, dim=1)
-         e%first(j) = i
-         e%motion(j) = e%before + i
-         e%is_single(j) = m%kind(i) /= layer
-         if (.not. e%is_single(j)) e%motion(j) = frame%joints%before + 2*frame%joints%of(e%before + i) - 1
-         moment = [0.0_wp, m%position(i) - 1.0_wp, m%position(i)]
-         select case (m%kind(i))
-         case (layer)
-            e%arm(1, 1, j) = 1.0_wp
-            e%arm(:, 2, j) = moment
-         case (axial)
-            e%arm(1, 1, j) = 1.0_wp
-         case (shear)
-            e%arm(:, 1, j) = [0.0_wp, -1.0_wp, -1.0_wp]/clear
-         case default
-            e%arm(:, 1, j) = moment
-         end select
+         associate (of => e%joint(j))
+            of%first = i
+            of%last = findloc(m%joint, j, dim=1, back=.true.)
+            of%is_single = m%kind(i) /= layer
+            of%motion = e%before + i
+            of%spring = e%inner + 1
+            e%inner = e%inner + merge(1, 2, of%is_single)
+            if (.not. of%is_single) of%motion = frame%joints%before + 2*frame%joints%of(e%before + i) - 1
+            moment = [0.0_wp, m%position(i) - 1.0_wp, m%position(i)]
+            select case (m%kind(i))
+            case (layer)
+               of%arm(:, 1) = along_axis(:, 1)
+               of%arm(:, 2) = moment
+            case (axial)
+               of%arm = along_axis
+            case (shear)
+               of%arm(:, 1) = [0.0_wp, -1.0_wp, -1.0_wp]/clear
+            case default
+               of%arm(:, 1) = moment
+            end select
+         end associate
       end do
    end subroutine set_joints
 
@@ -487,7 +493,7 @@ contains
          logical, intent(in) :: joint_numbers(:)
          type(frame_element), intent(inout) :: e
 
-         e%dead_moment(m%joint(j)) = moment
+         e%joint(m%joint(j))%dead_moment = moment
          associate (low => minloc(y, dim=1, mask=joint_numbers), high => maxloc(y, dim=1, mask=joint_numbers))
             frame%dead_force(e%before + high) = moment/(y(high) - y(low))
             frame%dead_force(e%before + low) = -moment/(y(high) - y(low))
