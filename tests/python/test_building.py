@@ -47,9 +47,12 @@ def test_a_drawn_frame_is_one_of_members_by_hand(drawn):
             carried = elastic.compression[elastic.members.index(f"C-{line}-{storey}")]
             load = max(round(carried / 40e3), 1) * 40e3
             rigid = (0.0 if storey == 1 else 0.25), 0.25
-            kinds[line, storey] = rbsdem.section.member(C, clear, axial_load=load, rigid_end=rigid)
+            spans = drawn.kinds[f"C-{line}-{storey}"].shear_spans
+            kinds[line, storey] = rbsdem.section.member(
+                C, clear, axial_load=load, rigid_end=rigid, shear_spans=spans
+            )
     beams = {
-        (bay, 0): rbsdem.section.member(B, width - 0.4, rigid_end=(0.2, 0.2), under_load=True)
+        (bay, 0): rbsdem.section.member(B, width - 0.4, rigid_end=(0.2, 0.2), load=23e3)
         for bay, width in ((1, 5.6), (2, 4.0))
     }
     hand = rbsdem.Frame.grid(
@@ -314,7 +317,7 @@ def test_one_beam_is_the_same_beam_by_every_door(tmp_path):
     """Drawn into a grid, made into a member before, and read from a case file: the same bits."""
     more = {"floor_mass": 20e3, "beam_load": 25e3, "kinematics": "pdelta"}
     k = rbsdem.section.member(C, 3.2, axial_load=120e3)
-    beam = rbsdem.section.member(B, 5.6, under_load=True)
+    beam = rbsdem.section.member(B, 5.6, load=25e3)
     by_hand = rbsdem.Frame.grid([3.2], [5.6], columns=k, beams=beam, **more)
     drawn = rbsdem.Frame.grid([3.2], [5.6], columns=k, beams=B, ends=0.0, **more)
     assert drawn.kinds["B-1-1"].flexure == beam.flexure

@@ -551,7 +551,7 @@ def test_a_drawn_beam_under_load_yields_in_its_span():
         start, end = still.member("B").moment[0]
         return -start, load * length**2 / 8 + (start - end) / 2, still
 
-    kind = rbsdem.section.member(section, length, under_load=True)
+    kind = rbsdem.section.member(section, length, load=20e3)
     plain = rbsdem.section.member(section, length)
     limit = 16 * section_moment / length**2
     curve = rbsdem.section.diagram(section, 0.0)

@@ -80,6 +80,9 @@ class FrameMember:
         Name in case files; made up if it is not given.
     sections : pair of Section, optional
         Sections of its two halves, y > 0 on the left of the way from start to end.
+    shear_spans : pair of pairs of float, optional
+        M/V that its strength in shear is of [m], at start and end, with y > 0 in tension and in
+        compression; a run tells where its forces have others.
     """
 
     modulus: float
@@ -101,6 +104,9 @@ class FrameMember:
     length: float | None = None
     name: str = field(default="", compare=False)
     sections: tuple[Section, Section] | None = field(default=None, compare=False, repr=False)
+    shear_spans: tuple[tuple[float, float], tuple[float, float]] | None = field(
+        default=None, compare=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameMember")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,6 +29,9 @@ _CHANNELS = {
 #: Moment in a span over what springs know, from which on it is told: where they say at which moment
 #: they yield, and where that is the largest that joints of layers have had.
 _OVER_YIELD, _OVER_LAYERS = 1.005, 1.05
+
+#: Share of the strength in shear, and of M/V, from which on an end with another M/V is told.
+_TELLING, _OFF_SPAN = 0.5, 0.2
 
 #: A threshold counts as reached within round-off: a path stands on it exactly.
 _REACHED = 1.0 - 1e-9
@@ -589,7 +593,43 @@ def span_note(result: FrameResult) -> str:
         f"member {name}: at {place:.2f} of its clear length the moment in its span reaches "
         f"{largest:.4g} N m, {ratio:.2f} times what its flexural springs yield at or carry{more}; "
         "no spring stands there, so that nothing cracks or yields. Put a node there, or a spring "
-        "(flexure at a place, section.member with under_load=True)"
+        "(flexure at a place, section.member with its load)"
+    )
+
+
+def shear_span_note(result: FrameResult) -> str:
+    """Return a note on ends whose M/V is not that which their strength in shear was found for.
+
+    At the largest shear force of each direction, where it is more than half of that strength.
+    """
+    frame, found = result.frame, []
+    for name, kind in frame.kinds.items():
+        springs = dict(kind._springs("shear"))
+        if kind.shear_spans is None:
+            continue
+        member = result.member(name)
+        for j, (end, position) in enumerate((("start", 0.0), ("end", 1.0))):
+            spring: Any = springs.get(position)
+            if not hasattr(spring, "f_y"):
+                continue
+            # Forces of springs are positive with y > 0 in tension at the start of a member.
+            for side, made in zip((2 * j - 1, 1 - 2 * j), kind.shear_spans[j], strict=True):
+                shear = side * member.shear[:, j]
+                row = int(shear.argmax())
+                strength = spring.f_y if side < 0 else getattr(spring, "f_y_neg", None)
+                span = side * float(member.moment[row, j]) / float(shear[row] or 1.0)
+                if shear[row] > _TELLING * (strength or spring.f_y) and span > 0:
+                    off = span / made
+                    if abs(off - 1.0) > _OFF_SPAN:
+                        found.append((abs(math.log(off)), name, end, span, made))
+    if not found:
+        return ""
+    _, name, end, span, made = max(found)
+    more = f", and {len(found) - 1} more are off by a fifth" if len(found) > 1 else ""
+    return (
+        f"member {name}: at the largest shear force of its {end} M/V is {span:.3g} m, and its "
+        f"strength in shear was found for {made:.3g} m{more}; make it anew with shear_spans of "
+        "section.member"
     )
 
 

@@ -495,8 +495,10 @@ def _return(
     if error is not None:
         error.result = result
         raise error
-    told = frame_result.span_note(result) if isinstance(result, FrameResult) else ""
-    for text in (note, told):
+    told = [note]
+    if isinstance(result, FrameResult):
+        told += [frame_result.span_note(result), frame_result.shear_span_note(result)]
+    for text in told:
         if text:
             _tell(text)
     return result

@@ -19,9 +19,10 @@ from rbsdem.model.column import NOTES_ON, notes_off
 from rbsdem.model.frame import FrameMember, FrameNode
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
-from rbsdem.section.columns import member
+from rbsdem.section.columns import member, plastic_moments
 from rbsdem.section.panel import JointPanel, PanelClass, rigid_ends
 from rbsdem.section.parameters import VERSION
+from rbsdem.section.spans import Pair, line_spans
 
 Halves = tuple[Section, Section]
 Drawn = Section | Halves | FrameMember
@@ -31,6 +32,8 @@ Cells = Drawn | Mapping[tuple[int, int], Drawn | None]
 CONCRETE_WEIGHT = 25e3
 #: Axial loads of columns are rounded to this part of f'c A_g, so that like columns are one kind.
 _STEP = 0.01
+#: So are M/V of the ends of columns, to this part of their clear length.
+_SPAN_STEP = 0.05
 #: Masses that differ by more than this from those of the loads are told.
 _DIFFER = 0.05
 #: Beams under load with more bars below than this times those above are told.
@@ -375,14 +378,20 @@ class _Grid:
         }
         columns, beams = self.kinds
         loads = np.broadcast_to(more["beam_load"], len(self.storeys))
+        ends = {
+            "columns": {
+                (i, k): (rigid.get((i, k - 1), (0.0, 0.0))[0], rigid[i, k][0])
+                for i, k in self.columns
+            },
+            "beams": {(i, k): (rigid[i, k][1], rigid[i + 1, k][1]) for i, k in self.beams},
+        }
+        spans = self._spans_of_columns(load, ends["columns"], more)
         for (i, k), one in self.columns.items():
-            ends = rigid.get((i, k - 1), (0.0, 0.0))[0], rigid[i, k][0]
-            columns[i, k] = _kind(one, self.storeys[k - 1], ends, load[i, k], f"C-{i}-{k}")
+            place = self.storeys[k - 1], ends["columns"][i, k], load[i, k], 0.0
+            columns[i, k] = _kind(one, *place, f"C-{i}-{k}", spans.get((i, k)))
         for (i, k), one in self.beams.items():
-            ends = rigid[i, k][1], rigid[i + 1, k][1]
-            beams[i, k] = _kind(
-                one, self.bays[i - 1], ends, 0.0, f"B-{i}-{k}", under_load=bool(loads[k - 1])
-            )
+            place = self.bays[i - 1], ends["beams"][i, k], 0.0, float(loads[k - 1])
+            beams[i, k] = _kind(one, *place, f"B-{i}-{k}")
         return list(self.kinds)
 
     def note_on_bars(self, beam_load: Any) -> None:
@@ -402,6 +411,51 @@ class _Grid:
                 "the load of the floor pulls the top; y > 0 is above, and section.mirrored turns "
                 "a section over"
             )
+
+    def _spans_of_columns(
+        self,
+        load: dict[tuple[int, int], float],
+        ends: dict[tuple[int, int], tuple[float, float]],
+        more: dict[str, Any],
+    ) -> dict[tuple[int, int], tuple[Pair, Pair]]:
+        """Return M/V of the ends of drawn columns where drawn beams yield, like for both sides."""
+        found = {}
+        levels = range(1, len(self.storeys) + 1)
+        pattern = np.ones(len(self.storeys))
+        if more.get("pattern", "triangular") != "uniform":
+            pattern = np.cumsum(self.storeys)
+        for i in range(1, len(self.bays) + 2):
+            line = [self.columns[i, k] for k in levels]
+            beams = [self.around(i, k)[1] for k in levels]
+            if not all(map(_is_drawn, line)) or not all(
+                one is None or _is_drawn(one) for pair in beams for one in pair
+            ):
+                continue
+            clear = [self.storeys[k - 1] - sum(ends[i, k]) for k in levels]
+            if min(clear) <= 0.0:
+                continue
+            try:
+                plastic = [
+                    tuple(sum(plastic_moments(half, load[i, k])) / 2 for half in _halves(one))
+                    for k, one in zip(levels, line, strict=True)
+                ]
+                nodes = [
+                    sum(
+                        sum(plastic_moments(_halves(one)[1 - at], 0.0)) / 2
+                        for at, one in enumerate(pair)
+                        if one is not None
+                    )
+                    for pair in beams
+                ]
+            except InputError:
+                continue
+            base = plastic[0][0] if more.get("base", "fixed") == "fixed" else 0.0
+            given: Any = base, plastic, nodes, self.storeys, clear, pattern.tolist()
+            for k, own in zip(levels, line_spans(*given), strict=True):
+                step = _SPAN_STEP * clear[k - 1]
+                low, high = (step * max(round(each / step), 1) for each in own)
+                found[i, k] = (low, low), (high, high)
+        return found
 
     def around(self, i: int, k: int) -> tuple[list[Any], list[Any]]:
         """Return the columns below and above a node, and the beams on its left and right."""
@@ -496,9 +550,9 @@ def _kind(
     length: float,
     ends: tuple[float, float],
     load: float,
+    span_load: float,
     name: str,
-    *,
-    under_load: bool = False,
+    spans: tuple[Pair, Pair] | None = None,
 ) -> FrameMember | None:
     if not _is_drawn(one):
         return one  # type: ignore[no-any-return]
@@ -508,12 +562,18 @@ def _kind(
             f"frame: member {name} of {length:g} m has rigid ends of {sum(ends):g} m, and no length"
         )
     try:
-        made = _made(_halves(one), clear, load, under_load)
+        made = _made(_halves(one), clear, load, span_load, spans)
     except InputError as error:
         raise InputError(f"frame: member {name}: {error}") from None
     return model.with_rigid_end(made, ends)
 
 
 @lru_cache(maxsize=1024)
-def _made(sections: Halves, length: float, axial_load: float, under_load: bool) -> FrameMember:
-    return member(sections, length, axial_load=axial_load, under_load=under_load)
+def _made(
+    sections: Halves,
+    length: float,
+    axial_load: float,
+    load: float,
+    spans: tuple[Pair, Pair] | None,
+) -> FrameMember:
+    return member(sections, length, axial_load=axial_load, load=load, shear_spans=spans)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, Literal, TypeAlias, get_args, overload
 
 from rbsdem import _arguments
@@ -11,12 +12,14 @@ from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.materials import CONCRETE_DENSITY
 from rbsdem.model.shape import Section, checked_section
-from rbsdem.model.springs import Elastic, Spring, Takeda, unchecked
+from rbsdem.model.springs import Elastic, Pinching, Spring, Takeda, unchecked
 from rbsdem.model.wall import WallSection
 from rbsdem.section.curvature import axial_load_note, column_length
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
+from rbsdem.section.shear import shear_spring
+from rbsdem.section.spans import Pair, beam_spans
 from rbsdem.section.strength import axial_failure_law, nominal_moment, shear_failure_drift
 
 Model: TypeAlias = Literal["layered", "paper"]
@@ -229,18 +232,19 @@ def member(
     model_parameters: ModelParameters | None = None,
     restrained: int | None = None,
     rigid_end: float | tuple[float, float] = 0.0,
-    under_load: bool = False,
+    load: float = 0.0,
+    shear_spans: tuple[Pair, Pair] | None = None,
     name: str = "",
 ) -> FrameMember:
     """Return the kind of members of a frame with this section: each half is a layered column.
 
-    From each end to the middle, where the moment is taken to change its sign, the member is a
-    cantilever of the layered model: a joint of layers with bar slip at the end, a joint that cracks
-    between it and the middle, and a shear spring in series. The axial force is that of the frame;
-    `axial_load` only chooses what the model takes from it (length and softening of the hinge,
-    strength in shear). Beams have none. A member under axial load that has failed in shear loses
-    this load at the drift of `rbsdem.section.strength.axial_failure_drift`; columns whose hinges
-    yield first, at more than 0.6 of the strength in shear, fail in shear at the drift of
+    From each end to the middle the member is a cantilever of the layered model: a joint of layers
+    with bar slip at the end, a joint that cracks between it and the middle, and a shear spring in
+    series, whose strength is that of M/V where both ends yield. The axial force is that of the
+    frame; `axial_load` only chooses what the model takes from it (length and softening of the
+    hinge, strength in shear). Beams have none. A member under axial load that has failed in shear
+    loses this load at the drift of `rbsdem.section.strength.axial_failure_drift`; columns whose
+    hinges yield first, at more than 0.6 of the strength in shear, fail in shear at the drift of
     `rbsdem.section.strength.shear_failure_drift`.
 
     Parameters
@@ -255,10 +259,13 @@ def member(
     model_parameters, restrained
         As for `column`; by default bars of members without axial load neither grow stronger nor
         wear with their range of strain, as those of columns do.
-    under_load : bool, optional
-        Whether a load acts in its span, as on a beam under a floor: a joint of layers, without
-        slip of bars, then stands in the middle too, where the span yields, and all of the member is
-        cracked from the first, as its ends are.
+    load : float, optional
+        Load that acts in its span toward y < 0, as on a beam under a floor [N/m]: a joint of
+        layers, without slip of bars, then stands in the middle too, where the span yields, and all
+        of the member is cracked from the first, as its ends are.
+    shear_spans : pair of pairs of float, optional
+        M/V of the strength in shear [m] at start and end, with y > 0 in tension and in compression;
+        by default those of ends that yield under the load (`rbsdem.section.spans.beam_spans`).
     rigid_end, name
         As for `FrameMember`.
 
@@ -280,20 +287,23 @@ def member(
     common: Any = {"model_parameters": model_parameters, "restrained": restrained}
     start, end = (column(one, 0.5 * length, axial_load=axial_load, **common) for one in halves)
     (hinge, above), (last, below) = start.joints("flexure"), end.joints("flexure")
-    (fails, slips), (falls, slides) = start.joints("shear"), end.joints("shear")
+    (_, slips), (_, slides) = start.joints("shear"), end.joints("shear")
+    load = _arguments.number(load, "load", least=0.0)
+    spans = shear_spans or _spans(halves, length, axial_load, load)
+    fails, falls = (_shear(half, own) for half, own in zip((start, end), spans, strict=True))
     near, far = (bodies(half)[0][0] / length for half in (start, end))
     failures = [
-        _failure(one, length, axial_load, shear)
-        for one, shear in zip(halves, (fails, falls), strict=True)
+        _failure(one, own[0], axial_load, shear)
+        for one, own, shear in zip(halves, spans, (fails, falls), strict=True)
         if axial_load > 0
     ]
     drift = min((one for one, _, _ in failures), default=None)
-    load = min((one for _, one, _ in failures), default=None)
+    failure_load = min((one for _, one, _ in failures), default=None)
     modulus, area, depth = (
         0.5 * (one + other) for one, other in zip(*(_elastic(half) for half in halves), strict=True)
     )
     joints = {0.0: hinge, 1.0: last}
-    if under_load:
+    if load > 0.0:
         # Between two cracked joints the rest is cracked too. It turns by its mean moment under the
         # load, so that nothing is made up for lumping.
         above, below = (
@@ -320,10 +330,48 @@ def member(
         length=length,
         name=name,
         failure_drift=drift,
-        failure_load=load,
+        failure_load=failure_load,
         shear_drift=min((one for _, _, one in failures if one is not None), default=None),
         sections=halves,
+        shear_spans=spans,
     )
+
+
+def _spans(
+    halves: tuple[Section, Section], length: float, axial_load: float, load: float
+) -> tuple[Pair, Pair]:
+    """Return M/V of ends that yield; the middle of the length where they are alike."""
+    half = 0.5 * length, 0.5 * length
+    if halves[0] == halves[1] and halves[0].symmetric and not load > 0.0:
+        return half, half
+    try:
+        start, end = (plastic_moments(one, axial_load) for one in halves)
+    except InputError:
+        return half, half
+    return beam_spans(start, end, length, load)
+
+
+@lru_cache(maxsize=1024)
+def plastic_moments(section: Section, axial_load: float) -> Pair:
+    """Return the nominal moments of a section with y > 0 in tension and in compression [N m].
+
+    Raises
+    ------
+    InputError
+        If the section does not carry the axial load.
+    """
+    first = nominal_moment(section, axial_load)
+    second = first if section.symmetric else nominal_moment(section.mirrored, axial_load)
+    if not min(first, second) > 0.0:
+        raise InputError(f"the section has no moment under an axial load of {axial_load:.4g} N")
+    return first, second
+
+
+def _shear(half: LayeredColumn, spans: Pair) -> Pinching:
+    """Return the shear spring of a half for its shear spans."""
+    model = half._drawing
+    drawn = model.section, model.height, model.axial_load, model.joint.shear_stiffness
+    return shear_spring(*drawn, model.parameters, model.joint, spans=spans)[0]
 
 
 def _elastic(section: Section) -> tuple[float, float, float]:
@@ -331,13 +379,13 @@ def _elastic(section: Section) -> tuple[float, float, float]:
 
 
 def _failure(
-    section: Section, length: float, axial_load: float, shear: Spring
+    section: Section, span: float, axial_load: float, shear: Pinching
 ) -> tuple[float, float, float | None]:
     """Return when a member whose hinges have yielded fails in shear, and loses its axial load."""
     drift, halves = axial_failure_law(section)
-    force = 2.0 * nominal_moment(section, axial_load) / length
+    force = nominal_moment(section, axial_load) / span
     # Below that share of its strength in shear it is flexure that limits a column (ASCE 41-17).
-    critical = force > _IN_FLEXURE * shear.f_y  # type: ignore[attr-defined]
+    critical = force > _IN_FLEXURE * shear.f_y
     # Without ties any load falls at once.
     load = max(halves, _LEAST_TIES * axial_load)
     return drift, load, shear_failure_drift(section, force, axial_load) if critical else None

@@ -463,6 +463,8 @@ def shear_spring(
     stiffness: float,
     given: ModelParameters,
     joint: HingeJoint | None = None,
+    *,
+    spans: tuple[float, float] | None = None,
 ) -> tuple[Pinching, dict[str, tuple[float, float]]]:
     """Make the shear spring of a column.
 
@@ -480,6 +482,8 @@ def shear_spring(
         Parameters of the model.
     joint : HingeJoint, optional
         The hinge, with whose work the strength decays; without it the strength does not.
+    spans : tuple of float, optional
+        Shear spans M/V with y > 0 in tension and in compression [m]; by default `length`.
 
     Returns
     -------
@@ -498,8 +502,12 @@ def shear_spring(
     InputError
         If the length is not positive.
     """
-    drawn = [section] if section.symmetric else [section, section.mirrored]
-    sides = [_side(each, length, axial_load, stiffness, given) for each in drawn]
+    first, second = spans or (length, length)
+    drawn = [(section, first)]
+    if first != second or not section.symmetric:
+        drawn = [(section, first), (section.mirrored, second)]
+    sides = [_side(each, length, span, axial_load, stiffness, given) for each, span in drawn]
+    span = 0.5 * (first + second)
     lines = {**sides[0].line}
     for side in sides[1:]:
         lines |= {f"{name}_neg": value for name, value in side.line.items()}
@@ -511,7 +519,7 @@ def shear_spring(
     if given.shear_endurance > 0.0:
         # Few ties do not hold a crack together, and bars that slip split the cover.
         lasts = min(1.0, max(2.0 * ties / f_y, _FEWEST) ** 2)
-        lasts /= max(bond_demand(section, length) / _USUAL_BOND, _LEAST_BOND)
+        lasts /= max(bond_demand(section, span) / _USUAL_BOND, _LEAST_BOND)
         # The rule refuses what would fall faster than the spring is stiff.
         soonest = 1.01 * max(side.fastest for side in sides) / (stiffness / length * unit)
         lambda_s = max(given.shear_endurance * lasts, soonest)
@@ -520,7 +528,7 @@ def shear_spring(
         lambda_h = joint.yield_work / given.shear_decay / unit
         sizes = shear_sizes(section)
         strut = given.shear_decay_strut * sizes.fc * sizes.width * sizes.d
-        stays = given.shear_decay_ties * ties + axial_strut(section, length, axial_load)
+        stays = given.shear_decay_ties * ties + axial_strut(section, span, axial_load)
         s_min = min(0.95, stays / f_y, strut / f_y)
     limits = {
         name: (min(s.limits[name][0] for s in sides), max(s.limits[name][1] for s in sides))
@@ -563,21 +571,26 @@ class _Side:
 
 
 def _side(
-    section: Section, length: float, axial_load: float, stiffness: float, given: ModelParameters
+    section: Section,
+    length: float,
+    span: float,
+    axial_load: float,
+    stiffness: float,
+    given: ModelParameters,
 ) -> _Side:
-    """Return the spring where y > 0 is in tension."""
+    """Return the spring of a length where y > 0 is in tension, with its strength of a span M/V."""
     sizes = shear_sizes(section)
     if section.shape == "wall":
-        arch = arch_factor(section, length, 0.0, begins=given.shear_wall_arch)
-        by_theory = given.shear_wall_strut * axial_strut(section, length, axial_load)
+        arch = arch_factor(section, span, 0.0, begins=given.shear_wall_arch)
+        by_theory = given.shear_wall_strut * axial_strut(section, span, axial_load)
     else:
-        arch, by_theory = arch_factor(section, length, axial_load), 0.0
-    by_theory += shear_strength_mcft(section, length, axial_load, arch=arch)
+        arch, by_theory = arch_factor(section, span, axial_load), 0.0
+    by_theory += shear_strength_mcft(section, span, axial_load, arch=arch)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     least = 1e-4 * sizes.fc * sizes.gross_area
     f_y = max(given.shear_strength * by_theory, least)
     by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
-    by_concrete = shear_strength_sezen(section, length, axial_load) - by_ties
+    by_concrete = shear_strength_sezen(section, span, axial_load) - by_ties
     f_c = min(max(by_concrete, _LEAST * f_y), 0.9 * f_y)
     whole = stiffness / length
     cracked = cracked_shear_stiffness(section) / length
