@@ -237,7 +237,7 @@ contains
             end do
          end if
          call self%parts%find(with_kinds, messages)
-         if (allocated(self%drawing)) deallocate (self%parts)
+         if (self%is_drawn_frame()) deallocate (self%parts)
          call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
             call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the "// &
@@ -306,7 +306,8 @@ contains
    pure logical function is_drawn_frame(self)
       class(case_record), intent(in) :: self
 
-      is_drawn_frame = allocated(self%frame) .and. allocated(self%drawing)
+      is_drawn_frame = allocated(self%frame)
+      if (is_drawn_frame) is_drawn_frame = allocated(self%drawing) .or. size(self%frame%infill_of) > 0
    end function is_drawn_frame
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.

@@ -312,6 +312,9 @@ _EVENTS = {
     ("shear", "cracking"): "shear_cracking",
     ("shear", "yield"): "shear_yield",
     ("shear", "cap"): "shear_failure",
+    ("infill", "cracking"): "infill_cracking",
+    ("infill", "cap"): "infill_peak",
+    ("infill", "residual"): "infill_residual",
     ("member", "shear failure"): "shear_failure",
     ("member", "lost"): "axial_failure",
 }

@@ -752,6 +752,21 @@ class Frame:
         assert kind is not None, member
         return kind
 
+    @property
+    def scope_note(self) -> str:
+        """Scope of results of the frame, printed with them."""
+        return SCOPE_NOTE
+
+    @property
+    def infilled(self) -> tuple[Any, ...]:
+        """Infills in their places, `rbsdem.section.infill.InfilledBay`; none without drawings."""
+        return ()
+
+    @cached_property
+    def struts(self) -> dict[str, Any]:
+        """Infills in their places, by the names of their struts."""
+        return {name: bay for bay in self.infilled for name in bay.struts}
+
     @cached_property
     def landmarks(self) -> dict[FrameSpring, list[Landmark]]:
         """Cracking, yield and cap of each spring, first time on the virgin curve."""
@@ -762,6 +777,9 @@ class Frame:
             own = {node.name: node.panel for node in self.nodes}
             panel = own.get(spring.member) or self.panel
             return [] if panel is None else panel.landmarks()
+        if spring.member in self.struts:
+            marks: list[Landmark] = self.struts[spring.member].landmarks()
+            return marks
         kind = self.kinds[spring.member]
         if kind.yield_moment is not None:
             if spring.group != "flexure":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Literal
@@ -15,7 +15,7 @@ from rbsdem._files import data_frame, text_table
 from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, index_of, parabola
+from rbsdem.model.frame import Frame, FrameSpring, MemberGeometry, index_of, parabola
 from rbsdem.model.rows import LimitState, LimitStates, Rows
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
@@ -134,7 +134,6 @@ class FrameResult(Rows):
         (`FrameMember.failure_drift`, `Frame.losses`).
     """
 
-    scope_note: ClassVar[str] = SCOPE_NOTE
     _derived: ClassVar[tuple[str, ...]] = ("energy", "springs", "acceleration")
 
     @property
@@ -147,6 +146,11 @@ class FrameResult(Rows):
     def column(self) -> Frame:
         """The structure, by the name that results of columns have for it."""
         return self.frame
+
+    @property
+    def scope_note(self) -> str:
+        """Scope of the results, printed with them."""
+        return self.frame.scope_note
 
     @property
     def springs(self) -> dict[str, Array]:
@@ -323,13 +327,23 @@ class FrameResult(Rows):
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(weight * self.storey_drift / shear)
 
-    def _above_floors(self) -> tuple[Array, Array]:
-        """Return storey shears, (rows, storeys), and dead loads above, (storeys,) [N]."""
+    @cached_property
+    def infill_shear(self) -> Array:
+        """Part of `storey_shear` that struts of infills carry, shape (rows, storeys) [N]."""
+        return self._above_floors(set(self.frame.struts))[0]
+
+    def _above_floors(self, names: Collection[str] | None = None) -> tuple[Array, Array]:
+        """Return storey shears, (rows, storeys), and dead loads above, (storeys,) [N].
+
+        Of all members, or of some.
+        """
         count, parts = len(self._storeys()), self.frame.parts
         level = np.array([parts.y[parts.floor == i].mean() for i in range(count + 1)])
         cuts = level[:-1] + 1e-3 * np.diff(level)
         shear, weight = np.zeros((self.time.size, count)), np.zeros(count)
         for at, one in enumerate(self.frame.geometry.values()):
+            if names is not None and one.name not in names:
+                continue
             upward = parts.y[one.start] < parts.y[one.end]
             low, high = sorted((parts.y[one.start], parts.y[one.end]))
             through = (low < cuts) & (cuts < high)
@@ -466,7 +480,8 @@ class FrameResult(Rows):
         """Limit states of the springs, in the order in which they are reached first.
 
         Cracking, yield and cap of each side; of drawn members spalling, where an outer layer of
-        concrete has lost its strength; failures of members. On a path of `pushover` each of a
+        concrete has lost its strength; of the struts of infills (group "infill") cracking, cap and
+        residual; failures of members. On a path of `pushover` each of a
         spring is a row of its own; else it is that of the first row kept beyond it.
         """
         found: list[tuple[str, float, dict[str, Any]]] = []
@@ -477,8 +492,9 @@ class FrameResult(Rows):
                 (point, self._reached(point, values)) for point in self.frame.landmarks[spring]
             ]
             end = {0.0: "start", 1.0: "end"}.get(spring.position, f"{spring.position:g}")
-            where = {"member": spring.member, "group": spring.group}
-            where["end"] = "" if spring.group == "panel" else end
+            group = "infill" if spring.member in self.frame.struts else spring.group
+            where = {"member": spring.member, "group": group}
+            where["end"] = "" if group in ("panel", "infill") else end
             found += [
                 (point.name, float(self.time[row]), where | {"side": point.side})
                 for point, row in [*points, *self._yields(spring, values)]

@@ -101,9 +101,11 @@ class LimitState:
     name : str
         Of `limit_states()`: "cracking", "first_yield", "nominal_moment", "hoop_yield", "spalling",
         "bar_buckling", "hoop_fracture", "bar_fracture", "cap", "shear_cracking", "shear_yield",
-        "shear_failure", "strength_loss", "collapse" or "axial_failure". Of the `events` of a frame
-        "cracking", "yield", "spalling" or "cap" of a spring; of a member "shear failure", from
-        where on its drift decides whether it carries its axial load, "lost" where it does not,
+        "shear_failure", "strength_loss", "collapse" or "axial_failure"; of a frame
+        "infill_cracking", "infill_peak" and "infill_residual" too. Of the `events` of a frame
+        "cracking", "yield", "spalling", "cap" or, of an infill, "residual" of a spring; of a
+        member "shear failure", from where on its drift decides whether it carries its axial load,
+        "lost" where it does not,
         "snap" where its inside jumps to another equilibrium (the jump that loses most energy), or
         "fall" where it has none any more.
     row : int
@@ -120,8 +122,9 @@ class LimitState:
     source : str
         Where the threshold comes from.
     member, group : str
-        Of a frame, name of the member, and which of its springs: "flexure", "shear" or
-        "axial_spring"; or name of the node, and "panel"; "member" where it is lost as a whole.
+        Of a frame, name of the member, and which of its springs: "flexure", "shear",
+        "axial_spring" or "infill", a strut of one; or name of the node, and "panel"; "member" where
+        it is lost as a whole.
     end : str
         "start", "end", or the place between them in shares of the clear length; "" in a panel.
     side : int

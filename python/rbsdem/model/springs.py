@@ -24,7 +24,7 @@ AnySpring = TypeVar("AnySpring", bound="Spring")
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
 
-LandmarkName = Literal["cracking", "yield", "spalling", "cap"]
+LandmarkName = Literal["cracking", "yield", "spalling", "cap", "residual"]
 
 #: A deformation that no spring reaches [m or rad].
 _NEVER = 1e30
@@ -36,8 +36,8 @@ class Landmark(NamedTuple):
     Attributes
     ----------
     name : str
-        "cracking", where the first line ends before yield; "yield"; or "cap", from which on the
-        force falls.
+        "cracking", where the first line ends before yield; "yield"; "cap", from which on the force
+        falls; or "residual", where that ends.
     side : int
         1, or -1 for negative deformations.
     deformation : float

@@ -63,6 +63,7 @@ _MARKS: dict[str, dict[str, Any]] = {
     "yield": {"marker": "o", "markerfacecolor": "white"},
     "spalling": {"marker": "^", "markerfacecolor": "#e67e22"},
     "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
+    "residual": {"marker": "v", "markerfacecolor": "#a04a26"},
     "shear failure": {"marker": "s", "markerfacecolor": "#e67e22"},
     "lost": {"marker": "X", "markerfacecolor": "#c0392b", "markersize": 6.0},
 }
@@ -71,9 +72,19 @@ _VERBS = {
     "yield": "yields",
     "spalling": "spalls",
     "cap": "reaches its cap",
+    "residual": "is at what is left of it",
     "lost": "is lost",
 }
 _VERBS |= {"shear failure": "fails in shear"}
+
+#: States of infills, their names in a legend and their fills, and how panels are drawn.
+_PANELS = {
+    "": ("infill", "#f3e3da"),
+    "cracking": ("infill cracked", "#e3b9a3"),
+    "cap": ("infill beyond its peak", "#cf7f5a"),
+    "residual": ("infill at what is left", "#a04a26"),
+}
+_PANEL: dict[str, Any] = {"edgecolor": "#b08a76", "linewidth": 0.5, "zorder": 0.5}
 
 #: Size of a support and place of a hinge beside its node, in shares of the larger dimension.
 _SYMBOL = 0.022
@@ -145,6 +156,8 @@ def frame(
             moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
             turns = spring_rotations(result, row)
             for i, member in enumerate(structure.geometry.values()):
+                if member.name in structure.struts:
+                    continue
                 bent = deformed(result, member, row, scale, turns)
                 lost = result.lost is not None and result.lost[row, i] > 0
                 line = _MEMBER | (_LOST if lost else {})
@@ -153,6 +166,7 @@ def frame(
                     drawn.plot(*np.vstack((moved[node], end)).T, **line)
             drawn.set_title(_heading(result, row, f"Displacements × {scale:g}"))
         drawn.plot(*moved.T, **_NODE)
+        _draw_infills(drawn, structure, result, row, moved)
         _draw_hinges(drawn, structure, result, row, 0.0 if scale is None else scale)
         if result is None and len(structure.parts.members) <= _NAMED:
             _write_names(drawn, structure, size)
@@ -508,7 +522,7 @@ def _draw_hinges(
     reached: dict[tuple[str, str, str], str] = {}
     order = list(_STATES)
     for event in () if result is None else result.events:
-        if event.group != "member" and event.time <= result.time[row]:  # type: ignore[union-attr]
+        if event.group not in ("member", "infill") and event.time <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
             reached[key] = max(reached.get(key, ""), event.name, key=order.index)
     turns = None if result is None else spring_rotations(result, row)
@@ -516,7 +530,7 @@ def _draw_hinges(
     points: dict[str, list[Array]] = {state: [] for state in _STATES}
     for spring in structure.parts.springs:
         layered = (spring.rule, spring.group) == ("layered", "flexure")
-        if not (layered or structure.landmarks[spring]):
+        if spring.member in structure.struts or not (layered or structure.landmarks[spring]):
             continue
         if spring.group == "panel":
             node = structure.parts.nodes.index(spring.member)
@@ -552,11 +566,40 @@ def _draw_hinges(
         )
 
 
+def _draw_infills(
+    ax: Axes, structure: Frame, result: FrameResult | None, row: int, moved: Array
+) -> None:
+    """Draw infills between their nodes, filled by the furthest state that they have reached."""
+    names, states = structure.parts.nodes, list(_PANELS)
+    reached: dict[str, str] = {}
+    for event in () if result is None else result.events:
+        if event.group == "infill" and event.time <= result.time[row]:  # type: ignore[union-attr]
+            reached[event.member] = max(reached.get(event.member, ""), event.name, key=states.index)
+    drawn = set()
+    for one in structure.infilled:
+        at = [
+            names.index(f"N-{line}-{floor}")
+            for line, floor in (
+                (one.bay, one.storey - 1), (one.bay + 1, one.storey - 1),
+                (one.bay + 1, one.storey), (one.bay, one.storey),
+            )
+        ]  # fmt: skip
+        middle = moved[at].mean(axis=0)
+        shares = np.array([one.length / one.run, one.height / one.rise])
+        corners = middle + shares * (moved[at] - middle)
+        state = max((reached.get(strut, "") for strut in one.struts), key=states.index)
+        label, fill = _PANELS[state]
+        ax.fill(*corners.T, facecolor=fill, label="_" if state in drawn else label, **_PANEL)
+        drawn.add(state)
+
+
 def _undeformed(ax: Axes, structure: Frame, strong: bool) -> Array:
     """Draw the members where nothing acts on them; return the places of the nodes."""
     parts = structure.parts
     nodes = np.column_stack((parts.x, parts.y))
-    for ends in parts.ends:
+    for name, ends in zip(parts.members, parts.ends, strict=True):
+        if name in structure.struts:
+            continue
         ax.plot(*nodes[ends].T, **(_MEMBER if strong else _UNDEFORMED))
     for member in structure.geometry.values() if strong else ():
         # Rigid lengths are thick.
@@ -596,6 +639,8 @@ def _draw_supports(ax: Axes, structure: Frame, size: float) -> None:
 
 def _write_names(ax: Axes, structure: Frame, size: float) -> None:
     for member in structure.geometry.values():
+        if member.name in structure.struts:
+            continue
         at = member.foot + 0.5 * member.clear * member.axis
         upright = member.upright
         side = np.array([-1.0, 0.0]) if upright else np.array([0.0, 1.0])

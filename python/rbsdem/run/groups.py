@@ -15,6 +15,7 @@ from rbsdem.model.shape import CircularSection, RectangularSection, Section, Tee
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
 from rbsdem.section.building import Building, Frame
+from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 
@@ -266,10 +267,14 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
     }
     kinds |= {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
     cells = [_cells(*names, groups, kinds) for names in (("column_of", "line"), ("beam_of", "bay"))]
-    if not drawings:
+    infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
+    infilled = _cells("infill_of", "bay", groups, infills)
+    if not drawings and not infilled:
         return Frame(columns=cells[0] or None, beams=cells[1] or None, **made)
     storeys, bays = made.pop("storeys", ()), made.pop("bays", ())
-    building = Building(cells[0], cells[1], ends, getattr(kinds.get(hoops), "ties", hoops))
+    building = Building(
+        cells[0], cells[1], ends, getattr(kinds.get(hoops), "ties", hoops), infilled
+    )
     return Frame.of_drawings(tuple(storeys), tuple(bays), building, made)
 
 
@@ -283,6 +288,12 @@ def _drawn_section(groups: Groups) -> Section:
         )
     _parameters(about["version"], {})
     return _section(groups)
+
+
+def _infill(given: dict[str, Any]) -> Infill:
+    values = _core.typed("infill", given)
+    opening = values.pop("opening_length", 0.0), values.pop("opening_height", 0.0)
+    return Infill(**values, opening=opening if any(opening) else None)
 
 
 def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
@@ -332,6 +343,9 @@ def _cells(
         if isinstance(kind, Section):
             other = given.get("kind_to")
             found[pair] = kind if other is None else (kind, kinds[other])
+            continue
+        if isinstance(kind, Infill):
+            found[pair] = kind
             continue
         rigid_end = given.get("rigid_end", 0.0)
         if "rigid_from" in given or "rigid_to" in given:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import count
 from typing import Any, Literal
 
@@ -20,6 +20,7 @@ from rbsdem.model.frame import FrameMember, FrameNode
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
 from rbsdem.section.columns import member, plastic_moments
+from rbsdem.section.infill import INFILL_NOTE, Infill, InfilledBay
 from rbsdem.section.panel import JointPanel, PanelClass, rigid_ends
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.spans import Pair, line_spans
@@ -52,12 +53,15 @@ class Building:
         Rule of the rigid ends, the `share` of `rbsdem.section.rigid_ends`.
     panel_hoops : Ties, "none" or None
         Hoops in the panels of nodes; None: the nodes are rigid.
+    infills : dict
+        Infill, or None, by (bay, storey), 0 for all.
     """
 
     columns: dict[tuple[int, int], Any]
     beams: dict[tuple[int, int], Any]
     ends: float | Literal["asce"] = "asce"
     panel_hoops: Ties | Literal["none"] | None = None
+    infills: dict[tuple[int, int], Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,6 +86,7 @@ class Frame(model.Frame):
         node_load: float | Mapping[tuple[int, int], float] = 0.0,
         self_weight: bool = False,
         mass: Literal["from_loads"] | None = None,
+        infills: Infill | Mapping[tuple[int, int], Infill | None] | None = None,
         **more: Any,
     ) -> Frame:
         """Return a frame of storeys and bays, from kinds of members or from their sections.
@@ -116,6 +121,9 @@ class Frame(model.Frame):
         mass : "from_loads", optional
             Floor masses are those of the loads; given `floor_mass` that differ from them by more
             than 5 % are told.
+        infills : Infill or mapping, optional
+            Masonry between columns and beams: one for all bays and storeys, or by (bay, storey), 0
+            for all, where the last that fits counts; None: there is none.
         **more
             Other parameters of `Frame`; `beam_load` adds to the loads above.
 
@@ -138,6 +146,7 @@ class Frame(model.Frame):
             cells[1],
             ends if ends is not None else "asce" if panel_hoops is None else 1.0,
             panel_hoops,
+            model.cells_of(infills, "infills", lambda one: isinstance(one, Infill), "an Infill"),
         )
         nodes = {node.name: node for node in more.pop("nodes", ())}
         loads = np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load"))
@@ -159,7 +168,8 @@ class Frame(model.Frame):
                 floors[level - 1] -= node.load_y / STANDARD_GRAVITY
         _masses(more, floors, mass)
         more["nodes"] = tuple(nodes.values())
-        if all(isinstance(one, FrameMember) for one in grid.all_cells()):
+        drawn = any(building.infills.values()) or any(map(_is_drawn, grid.all_cells()))
+        if not drawn:
             return cls(heights, widths or None, cells[0], cells[1] or None, **more)
         return cls.of_drawings(heights, widths, building, more)
 
@@ -191,7 +201,27 @@ class Frame(model.Frame):
             own = nodes.get(name, FrameNode(name))
             nodes[name] = own if own.panel is not None else replace(own, panel=panel)
         given = given | {"nodes": tuple(nodes.values()), "building": building}
+        struts = [strut for one in grid.infilled(building.infills) for strut in one.members()]
+        given["members"] = (*given.get("members", ()), *struts)
         return cls(storeys, bays or None, cells[0], cells[1] or None, **given)
+
+    @cached_property
+    def infilled(self) -> tuple[InfilledBay, ...]:
+        """Infills in their places, whose struts are members."""
+        if self.building is None or not self.building.infills:
+            return ()
+        storeys: Any = self.storeys
+        bays: Any = self.bays
+        grid = _Grid(storeys, bays, self.building.columns, self.building.beams)
+        own = {member.name for member in self.members}
+        return tuple(
+            one for one in grid.infilled(self.building.infills) if own.issuperset(one.struts)
+        )
+
+    @property
+    def scope_note(self) -> str:
+        """Scope of results of the frame, printed with them."""
+        return f"{super().scope_note} {INFILL_NOTE}" if self.infilled else super().scope_note
 
     def to_namelist(self, *, springs: bool = False) -> str:
         """Return the frame as groups of a case file, from which the same frame comes back.
@@ -219,6 +249,8 @@ class Frame(model.Frame):
         ]
         nodes = tuple(node for node in own if node != FrameNode(node.name))
         known = {one.name: getattr(self, one.name) for one in fields(model.Frame)}
+        struts = {name for one in self.infilled for name in one.struts}
+        known["members"] = tuple(one for one in self.members if one.name not in struts)
         for name in ("storeys", "bays", "columns", "beams"):
             known.pop(name)
         with notes_off():
@@ -226,7 +258,7 @@ class Frame(model.Frame):
         if again != self:
             # It was changed since, as by `without`.
             return self._statement
-        plain = replace(self, nodes=nodes, building=None)
+        plain = replace(self, nodes=nodes, building=None, members=known["members"])
         cells = building.columns, building.beams
         drawings: dict[Section, str] = {}
         taken = {one.name for own in cells for one in own.values() if isinstance(one, FrameMember)}
@@ -246,11 +278,30 @@ class Frame(model.Frame):
             like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
             hoops = name_of(next((one for one in drawings if one.ties == hoops), like))
         more = {"panel_hoops": hoops, "ends": building.ends if building.ends != "asce" else None}
-        statement = plain._state(cells, drawn, **more)
+        statement = plain._state(cells, drawn, **more) + _infill_groups(building.infills)
         for section, name in drawings.items():
             about = {"name": _core.Text(name), "version": _core.Text(VERSION)}
             statement += _core.group("drawing", about) + section.drawing()
         return statement
+
+
+def _infill_groups(cells: Mapping[tuple[int, int], Infill | None]) -> _core.Statement:
+    """Return the groups of infills and of their places."""
+    infills = list(dict.fromkeys(one for one in cells.values() if one is not None))
+    taken = {one.name for one in infills}
+    free = (name for name in (f"infill-{i}" for i in count(1)) if name not in taken)
+    names: dict[Infill | None, str] = {one: one.name or next(free) for one in infills}
+    parts = []
+    for one in infills:
+        length, height = one.opening or (None, None)
+        given = {name: getattr(one, name) for name in ("thickness", "fm", "strength", "peak_drift")}
+        given |= {"opening_length": length, "opening_height": height}
+        parts.append(_core.group("infill", {"name": _core.Text(names[one])} | given))
+    for (bay, storey), cell in cells.items():
+        where = {"bay": bay or None, "storey": storey or None}
+        kind = _core.Text(names.get(cell, "none"))
+        parts.append(_core.group("infill_of", where | {"kind": kind}))
+    return _core.joined(parts)
 
 
 # With the parameters of the frame that it extends.
@@ -457,6 +508,39 @@ class _Grid:
                 found[i, k] = (low, low), (high, high)
         return found
 
+    def infilled(self, cells: Mapping[tuple[int, int], Infill | None]) -> list[InfilledBay]:
+        """Return the infills in their places."""
+        found = []
+        for what, at, most in (("bay", 0, len(self.bays)), ("storey", 1, len(self.storeys))):
+            for cell in cells:
+                if cell[at] > most:
+                    raise InputError(
+                        f"frame: infills: {what} {cell[at]}, but the frame has {most}; correct it, "
+                        "or give 0 for all"
+                    )
+        for (i, k), beam in self.beams.items():
+            infill = _at(cells, i, k)
+            if infill is None:
+                continue
+            where = f"frame: the infill in bay {i}, storey {k}"
+            sides = self.columns[i, k], self.columns[i + 1, k]
+            if beam is None or None in sides:
+                missing = "beam above it" if beam is None else "column beside it"
+                raise InputError(f"{where} has no {missing}; give None in its place")
+            run, rise = self.bays[i - 1], self.storeys[k - 1]
+            length = run - sum(_half_depth(one, beam, end) for end, one in enumerate(sides))
+            height = rise - _half_depth(beam, sides[0], 1)
+            height -= _half_depth(self.beams.get((i, k - 1)), sides[0], 0) if k > 1 else 0.0
+            if not (length > 0.0 and height > 0.0):
+                raise InputError(f"{where} has no place between columns and beams")
+            bay = InfilledBay(infill, i, k, length, height, run, rise)
+            try:
+                bay.infill.opening_factor(length, height)
+            except InputError as error:
+                raise InputError(f"{where}: {error}") from None
+            found.append(bay)
+        return found
+
     def around(self, i: int, k: int) -> tuple[list[Any], list[Any]]:
         """Return the columns below and above a node, and the beams on its left and right."""
         columns = [self.columns.get((i, k)), self.columns.get((i, k + 1))]
@@ -526,6 +610,14 @@ def _area(one: Any) -> float:
     if not _is_drawn(one):
         return 0.0
     return 0.5 * sum(part.gross_area for part in _halves(one))
+
+
+def _half_depth(one: Any, other: Any, end: int) -> float:
+    """Return half the depth of a member [m]; of one by hand, the rigid end of the other there."""
+    if _is_drawn(one):
+        return 0.25 * sum(part.depth for part in _halves(one))
+    rigid = other.rigid_end if one is not None and isinstance(other, FrameMember) else 0.0
+    return float(rigid[end] if isinstance(rigid, tuple) else rigid)
 
 
 def _elastic_kind(one: Any) -> FrameMember | None:

@@ -24,6 +24,7 @@ from rbsdem._files import atomic_write, claim_folder, data_frame, figure_bytes, 
 from rbsdem._types import DataFrame
 from rbsdem.checks.acceptance import Assessment, between, rows_at
 from rbsdem.checks.code_values import code_values
+from rbsdem.checks.infills import CHECK_NOTE, infills
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
@@ -437,6 +438,8 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
         "ductility": [np.fmax.reduce([np.nan, *member.ductility]) for member in members],
     }
     yield Sheet("Members", table=data_frame(rows), beside=len(members) > _MOST_MEMBERS)
+    if result.frame.infilled:
+        yield Sheet("Infills", CHECK_NOTE, table=infills(result))
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
 
 

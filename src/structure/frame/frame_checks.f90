@@ -57,6 +57,25 @@ contains
       do i = 1, size(record%beam_of)
          call record%beam_of(i)%check('beam_of', messages)
       end do
+      do i = 1, size(record%infill)
+         associate (infill => record%infill(i), name => "infill '"//trim(record%infill(i)%name)//"'")
+            call infill%check(name, messages)
+            if (infill%name == 'none') then
+               call messages%add(name//': the name means that there is no infill; choose another one')
+            else if (any(record%infill(:i - 1)%name == infill%name)) then
+               call messages%add(name//' is given twice; remove one')
+            end if
+            if (.not. (is_given(infill%fm) .or. is_given(infill%strength))) then
+               call messages%add(name//': fm is not given; give it, or strength')
+            else if (infill%opening_length > 0.0_wp .neqv. infill%opening_height > 0.0_wp) then
+               call messages%add(name//': opening_length and opening_height belong together; give both, '// &
+                                 'or none')
+            end if
+         end associate
+      end do
+      do i = 1, size(record%infill_of)
+         call record%infill_of(i)%check('infill_of', messages)
+      end do
       do i = 1, size(record%node)
          if (record%node(i)%name == '') call messages%add('node: the name is missing; give each a name')
          call record%node(i)%check("node '"//trim(record%node(i)%name)//"'", messages)

@@ -47,7 +47,8 @@ contains
 
       do i = 1, self%members
          call self%member_forces(i, d, f, s)
-         call self%compress(i, -s(1))
+         ! No force has no sign.
+         call self%compress(i, 0.0_wp - s(1))
          ! Springs that open carry it by the path, not from its begin on.
          associate (e => self%element(i))
             self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)

@@ -158,6 +158,9 @@ contains
       do i = 1, size(record%beam_of)
          call check_cell(record%beam_of(i), 'beam_of', 'bay', 'bays', bays)
       end do
+      do i = 1, size(record%infill_of)
+         call check_cell(record%infill_of(i), 'infill_of', 'bay', 'bays', bays)
+      end do
 
    contains
 
@@ -167,7 +170,13 @@ contains
          integer, intent(in) :: most
 
          call check_storey(group, cell%storey)
-         if (cell%kind /= 'none') call check_reference(cell%kind, [record%kind%name], group, 'kind', messages)
+         if (cell%kind == 'none') then
+            continue
+         else if (cell%is_infill) then
+            call check_reference(cell%kind, [record%infill%name], group, 'infill', messages)
+         else
+            call check_reference(cell%kind, [record%kind%name], group, 'kind', messages)
+         end if
          if (cell%line > most) call refuse(group//': '//key, cell%line, what, most)
       end subroutine check_cell
 

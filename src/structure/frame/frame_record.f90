@@ -21,8 +21,9 @@ module rbs_structure_frame_frame_record
    character(len=*), parameter :: support_names = 'free roller pinned fixed'
 
    !> The groups of a frame; all but the first may appear several times.
-   character(len=12), parameter, public :: frame_groups(8) = [character(len=12) :: &
-      'frame', 'floor', 'member_kind', 'column_of', 'beam_of', 'node', 'member', 'loss']
+   character(len=12), parameter, public :: frame_groups(10) = [character(len=12) :: &
+      'frame', 'floor', 'member_kind', 'column_of', 'beam_of', 'infill', 'infill_of', 'node', 'member', &
+      'loss']
 
    !> Mass and load of floors.
    type, extends(visited_record), public :: floor_record
@@ -45,9 +46,18 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_kind
    end type kind_record
 
-   !> The kind of columns or beams of a grid, 0: of all lines or bays, and of all storeys.
+   !> A masonry panel between columns and beams; Python makes its struts.
+   type, extends(visited_record), public :: infill_record
+      character(len=name_length) :: name = ''
+      real(wp) :: thickness = unset, fm = unset, opening_length = 0.0_wp, opening_height = 0.0_wp
+      real(wp) :: strength = unset, peak_drift = 0.003_wp
+   contains
+      procedure :: visit => visit_infill
+   end type infill_record
+
+   !> The kind of columns, beams or infills of a grid, 0: of all lines or bays, and of all storeys.
    type, extends(visited_record), public :: cell_record
-      logical :: is_beam = .false.
+      logical :: is_beam = .false., is_infill = .false.
       integer :: line = 0, storey = 0
       !> Name of a kind; of a drawn member that of a drawing, and of its second half if it is another one
       character(len=name_length) :: kind = '', kind_to = ''
@@ -109,7 +119,8 @@ module rbs_structure_frame_frame_record
       character(len=name_length) :: panel_hoops = ''
       type(floor_record), allocatable :: floor(:)
       type(kind_record), allocatable :: kind(:)
-      type(cell_record), allocatable :: column_of(:), beam_of(:)
+      type(cell_record), allocatable :: column_of(:), beam_of(:), infill_of(:)
+      type(infill_record), allocatable :: infill(:)
       type(node_record), allocatable :: node(:)
       type(member_record), allocatable :: member(:)
       type(loss_record), allocatable :: loss(:)
@@ -128,11 +139,11 @@ contains
    subroutine open_group(self, group)
       class(frame_record), intent(inout) :: self
       character(len=*), intent(in) :: group
-      type(cell_record) :: beam
+      type(cell_record) :: beam, infilled
 
       if (.not. allocated(self%floor)) then
-         allocate (self%floor(0), self%kind(0), self%column_of(0), self%beam_of(0), self%node(0), &
-                   self%member(0), self%loss(0), self%spring(0))
+         allocate (self%floor(0), self%kind(0), self%column_of(0), self%beam_of(0), self%infill(0), &
+                   self%infill_of(0), self%node(0), self%member(0), self%loss(0), self%spring(0))
       end if
       select case (group)
       case ('floor')
@@ -144,6 +155,11 @@ contains
       case ('beam_of')
          beam%is_beam = .true.
          self%beam_of = [self%beam_of, beam]
+      case ('infill')
+         self%infill = [self%infill, infill_record()]
+      case ('infill_of')
+         infilled%is_infill = .true.
+         self%infill_of = [self%infill_of, infilled]
       case ('node')
          self%node = [self%node, node_record()]
       case ('member')
@@ -168,6 +184,10 @@ contains
          number = size(self%column_of)
       case ('beam_of')
          number = size(self%beam_of)
+      case ('infill')
+         number = size(self%infill)
+      case ('infill_of')
+         number = size(self%infill_of)
       case ('node')
          number = size(self%node)
       case ('member')
@@ -199,6 +219,10 @@ contains
          call self%column_of(i)%visit(v)
       case ('beam_of')
          call self%beam_of(i)%visit(v)
+      case ('infill')
+         call self%infill(i)%visit(v)
+      case ('infill_of')
+         call self%infill_of(i)%visit(v)
       case ('node')
          call self%node(i)%visit(v)
       case ('member')
@@ -278,16 +302,38 @@ contains
                  'already, and carries none of it')
    end subroutine visit_kind
 
+   subroutine visit_infill(self, v)
+      class(infill_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('name', self%name, 'name of the infill', required=.true.)
+      call v%key('thickness', self%thickness, 'm', above_zero, 'thickness of the masonry, of all wythes')
+      call v%key('fm', self%fm, 'Pa', above_zero, 'compressive strength of the masonry across its bed '// &
+                 'joints; without it strength is needed', optional=.true.)
+      call v%key('opening_length', self%opening_length, 'm', not_negative, 'length of an opening, of '// &
+                 'several the sum')
+      call v%key('opening_height', self%opening_height, 'm', not_negative, 'height of the opening')
+      call v%key('strength', self%strength, 'N', above_zero, 'largest horizontal force, in place of that '// &
+                 'of the law', optional=.true.)
+      call v%key('peak_drift', self%peak_drift, '', bound_type(0.0_wp, 0.03_wp, .true., .true.), &
+                 'drift of the panel at which it has this force')
+   end subroutine visit_infill
+
    subroutine visit_cell(self, v)
       class(cell_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      if (self%is_beam) then
+      if (self%is_beam .or. self%is_infill) then
          call v%key('bay', self%line, '', not_negative, 'bay from the left, 0 for all')
       else
          call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
       end if
       call v%key('storey', self%storey, '', not_negative, 'storey from the ground up, 0 for all')
+      if (self%is_infill) then
+         call v%word('kind', self%kind, 'name of the infill, ''none'' where there is none; the last '// &
+                     'group that fits counts', required=.true.)
+         return
+      end if
       call v%word('kind', self%kind, 'name of the kind of member or of its drawing, ''none'' where '// &
                   'there is none; the last group that fits counts', &
                   required=.true.)
