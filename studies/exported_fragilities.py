@@ -9,6 +9,7 @@ the curves, and by 20 000 samples of pelicun, whose standard error is 0.0035 at 
 
 from __future__ import annotations
 
+import sys
 import tempfile
 from pathlib import Path
 
@@ -19,6 +20,9 @@ from pelicun.assessment import Assessment
 from rbsdem import fragility
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.many.runs import Intensity
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples" / "08-ida"))
+import export
 
 SAMPLES = 20_000
 STATES = {"first_yield": (0.3, 0.25), "collapse": (1.2, 0.4)}
@@ -55,7 +59,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fragility.csv"
         intensity = Intensity("sa_t1", 0.5, 0.05)
-        fragility.write_pelicun(path, given, intensity=intensity, name="pier")
+        export.write_pelicun(path, given, intensity, "pier")
         for level in (0.3, 0.9, 1.5):
             reached = [float(c.probability(level * STANDARD_GRAVITY)) for c in given.values()]
             ours = -np.diff([1.0, *reached, 0.0])

@@ -141,6 +141,8 @@ def _begin(folder: str) -> None:
 def ratios(logs: list[float]) -> str:
     """Return the median of ratios with their number, and their scatter, from their logarithms."""
     known = np.array([value for value in logs if math.isfinite(value)])
+    if not known.size:
+        return "| - | - "
     return f"| {math.exp(np.median(known)):.2f} ({known.size}) | {np.std(known):.2f} "
 
 
@@ -193,6 +195,8 @@ def strengths(specimens: list[peer.Specimen]) -> None:
                 force = np.max(np.abs(s.test().force))
                 law = [shear_strength_mcft(*hinge, arch=k) for k in (1.0, arch_factor(*hinge))]
                 logs.append(np.log(force / np.array(law)))
+        if not logs:
+            continue
         mean, sd = np.exp(np.mean(logs, axis=0)), np.std(logs, axis=0)
         cells = [f"{a:.2f}, {b:.3f}" for a, b in zip(mean, sd, strict=True)]
         print(f"| {kind} | {len(logs)} | {' | '.join(cells)} |")

@@ -8,6 +8,7 @@ Ten synthetic records; the same by the command: rbsdem ida case.nml synthetic:10
 import sys
 from pathlib import Path
 
+import export
 import numpy as np
 
 import rbsdem
@@ -47,4 +48,6 @@ print(f"1 % drift: theta {theta:.2f} m/s2, beta {scatter / slope:.2f}")
 if "--no-plot" not in sys.argv:
     plot.save(plot.ida(found), "ida.png")
     plot.save(plot.fragilities(curves), "fragility.png")
-    print("wrote ida.png, fragility.png")
+    export.write_nrml("pier.xml", curves, found.runs.measure, "pier")
+    export.write_pelicun("pier.csv", curves, found.runs.measure, "pier")
+    print("wrote ida.png, fragility.png, pier.xml, pier.csv")

@@ -73,7 +73,7 @@ COMMANDS = dict.fromkeys(
 }
 
 #: Extra of each package.
-_EXTRAS = {"pyarrow": "ensembles", "distributed": "cluster"}
+_EXTRAS = {"pyarrow": "parquet", "distributed": "cluster"}
 
 
 def extra(module: str) -> Any:

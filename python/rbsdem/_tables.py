@@ -91,7 +91,9 @@ class NumberTable:
     values : ndarray, shape (rows, columns)
         The numbers; NaN in a column of texts.
     head : tuple of str
-        The lines above the first row.
+        The lines above the first row and the names.
+    first : int
+        Number of the lines above the first row.
     texts : dict of int to str
         Columns of texts, dates or clocks, with the first entry of each.
     """
@@ -101,6 +103,7 @@ class NumberTable:
     units: tuple[str, ...]
     values: Array
     head: tuple[str, ...] = ()
+    first: int = 0
     texts: Mapping[int, str] = field(default_factory=dict)
 
     @property
@@ -269,19 +272,26 @@ def read_table(
         first = _first_row(lines, first, mark, point)
     values = _values(lines, first, columns, mark, point, where, texts)
     at = first if _is_count(lines, first, mark) else first - 1
-    head = tuple(lines[:first])
+    above = [i for i in range(first) if lines[i].strip()]
+    names_at = first
     if header is None and values.shape[1] in (2, 3) and _is_count(lines, at, mark):
         # The format of the PEER database: a title, the number of rows, the rows.
         values = values[at + 1 - first :]
         count = values.shape[1]
         names, units = ("displacement", "force", "axial_load")[:count], ("mm", "kN", "kN")[:count]
     else:
-        above = [line for line in head if line.strip()]
-        names, units = _head(above, mark, values.shape[1])
+        remarks = lines[first].rstrip(" ").endswith(mark)
+        names, units, rows = _head([lines[i] for i in above], mark, values.shape[1], remarks)
+        names_at = above[-rows] if rows else first
+        # Two numbers below names alone may be the first row.
+        counted = rows == 2 or (rows == 1 and values.shape[1] > 2)
+        if header is None and counted and _are_channels(lines[first:], mark):
+            warn(f"{where} line {first + 1}: numbers of channels are left out", RepairWarning)
+            values = values[1:]
     if texts:
         said = "; ".join(f"{names[i] or i + 1!r} has {text!r}" for i, text in texts.items())
         warn(f"{where}: columns of texts are left out: {said}", RepairWarning)
-    return NumberTable(where, names, units, values, head, texts)
+    return NumberTable(where, names, units, values, tuple(lines[:names_at]), first, texts)
 
 
 def _layout(
@@ -339,6 +349,7 @@ def _first_row(lines: list[str], begin: int, mark: str, point: str) -> int:
     below the names of the columns, and above a row in a file that begins with one.
     """
     columns, first, named = len(_split(lines[begin], mark)), begin, False
+    remarks = lines[begin].rstrip(" ").endswith(mark)
     top, between = (begin, False), begin
     for i in range(begin - 1, -1, -1):
         words = _split(lines[i], mark)
@@ -347,8 +358,11 @@ def _first_row(lines: list[str], begin: int, mark: str, point: str) -> int:
         numbers = _kinds(words, point)
         like = any(numbers) or any(map(_NOT_FINITE.match, words))
         fields = len(words) if mark == " " else lines[i].count(mark) + 1
-        if len(words) < columns and _is_count(lines, i, mark):
+        counts = named and _counts(words, columns)
+        if counts or (len(words) < columns and _is_count(lines, i, mark)):
             continue
+        if remarks and len(words) == columns + 1:
+            words = words[:columns]
         top = i, all(numbers) and (len(words) == columns or mark != " ")
         # Between blanks, a title is words and numbers too.
         title = mark == " " and not (numbers[0] or _NOT_FINITE.match(words[0]))
@@ -447,18 +461,52 @@ def _is_count(lines: Sequence[str], at: int, mark: str) -> bool:
     return int(words[0]) == sum(bool(line.strip()) for line in lines[at + 1 :])
 
 
-def _head(lines: Sequence[str], mark: str, columns: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return names and units from the lines above the numbers."""
+def _head(
+    lines: Sequence[str], mark: str, columns: int, remarks: bool
+) -> tuple[tuple[str, ...], tuple[str, ...], int]:
+    """Return names and units from the lines above the numbers, and how many of these have them.
+
+    A column of remarks without one has a name, and no field that is a number.
+    """
     empty = ("",) * columns
     statement = lines and _STATEMENT.match(lines[-1]) and len(re.findall("[:=]", lines[-1])) == 1
     rows = [] if statement else [_names(line, mark, columns) for line in lines[-2:]]
-    if not rows or len(rows[-1]) != columns:
-        return empty, empty
-    last = rows[-1]
-    if all(map(_is_unit, last)):
-        above = rows[0] if len(rows) > 1 and len(rows[0]) == columns else empty
-        return above, tuple(word.strip("[]() ") for word in last)
-    return last, tuple(map(_unit_in, last))
+    if remarks:
+        rows = [row[:columns] if len(row) == columns + 1 else row for row in rows]
+    last = rows[-1] if rows else ()
+    if len(last) != columns:
+        return empty, empty, 0
+    above = rows[0] if len(rows) > 1 and len(rows[0]) == columns else empty
+    if all(map(_is_unit, last)) or (above is not empty and _are_units(last, above)):
+        units = tuple(word.strip("[]() ") for word in last)
+        return above, units, 1 if above is empty else 2
+    units = tuple(map(_unit_in, last))
+    if not any(units) and mark != " ":
+        # In the files of some programs the units stand further up, without that of the times.
+        stated = (_names(line, mark, columns) for line in reversed(lines[:-1]))
+        row = next((row for row in stated if len(row) == columns and all(map(_is_unit, row[1:]))
+                    and not _is_unit(row[0])), ("", *units[1:]))  # fmt: skip
+        units = ("", *row[1:])
+    return last, units, 1
+
+
+def _are_units(words: Sequence[str], above: Sequence[str]) -> bool:
+    """Whether most words of a line are units, and few of the line above are."""
+    known, named = (sum(map(_is_unit, row)) for row in (words, above))
+    return 2 * known > len(words) and 2 * named < len(words)
+
+
+def _are_channels(lines: Sequence[str], mark: str) -> bool:
+    """Whether the first line counts the columns, and the next one has decimals."""
+    rows = [_split(line, mark) for line in lines[:20] if line.strip()][:2]
+    counted = len(rows) == 2 and _counts(rows[0], len(rows[1]))
+    return counted and not any(map(str.isdigit, rows[1]))
+
+
+def _counts(words: Sequence[str], columns: int) -> bool:
+    """Whether a line has the numbers of the columns, one after the other."""
+    first = words[0] if columns > 1 and words and words[0] in ("0", "1") else "-1"
+    return list(words) == [str(int(first) + i) for i in range(columns)]
 
 
 def _names(line: str, mark: str, columns: int) -> tuple[str, ...]:

@@ -6,8 +6,6 @@ from rbsdem.many.fragility import Counts as Counts
 from rbsdem.many.fragility import Fragility as Fragility
 from rbsdem.many.fragility import Hazard as Hazard
 from rbsdem.many.fragility import fit_fragility as fit_fragility
-from rbsdem.many.fragility import write_nrml as write_nrml
-from rbsdem.many.fragility import write_pelicun as write_pelicun
 from rbsdem.many.ida import IDA as IDA
 from rbsdem.many.ida import CollapseSearch as CollapseSearch
 from rbsdem.many.ida import Stripes as Stripes

@@ -82,9 +82,9 @@ contains
          '  rbsdem --help | --version', &
          '', &
          'with the Python package also:', &
-         '  rbsdem explore                                  draw a column or a frame, in the browser', &
+         '  rbsdem explore                                  a page to draw columns and frames', &
          '  rbsdem report CASE.nml                          a page on a case', &
-         '  rbsdem draw CASE.nml                            springs of a frame drawn by sections', &
+         '  rbsdem draw CASE.nml                            springs of a frame of sections', &
          '  rbsdem trade CASE.nml                           error and time of the methods', &
          '  rbsdem ensemble CASE.nml RECORD ... --out DIR   many records', &
          '  rbsdem ida CASE.nml RECORD ...                  incremental dynamic analysis', &

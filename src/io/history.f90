@@ -10,7 +10,7 @@ module rbs_io_history
    implicit none
    private
 
-   public :: history_type, read_history, elsewhere
+   public :: history_type, read_history, elsewhere, snippet
 
    !> A remedy for a layout that is not the strict one.
    character(len=*), parameter :: elsewhere = 'rbsdem.motions.read_motion and rbsdem.read_test of '// &
@@ -176,6 +176,16 @@ contains
          end if
       end subroutine read_peer
 
+      !> Whether a comment has a unit of acceleration or of a rate, or the word.
+      logical function states_unit(comment)
+         character(len=*), intent(in) :: comment
+         character(len=4), parameter :: marks(12) = ['unit', 'unid', 'einh', 'hz  ', ' gal', '(gal', '/s  ', &
+                                                     's-2 ', '(g) ', '[g] ', 'in g', '/(s ']
+         integer :: i
+
+         states_unit = any([(index(comment, trim(marks(i))) > 0, i=1, size(marks))])
+      end function states_unit
+
       !> Comments with #, perhaps a line of names, then numbers.
       subroutine read_csv()
          !> Of columns, the first that the line has
@@ -193,8 +203,8 @@ contains
             call file%next_line(first, last, found)
             if (.not. found) exit
             if (.not. is_blank(file%text(first:last))) exit
-            if (index(lower(file%text(first:last)), 'unit') == 0) cycle
-            history%stated = snippet(file%text(first:last))
+            if (.not. states_unit(lower(file%text(first:last)))) cycle
+            history%stated = file%text(first:last)
          end do
          if (.not. found) then
             call fatal_error(error, bad_input, path//': has no rows of numbers')

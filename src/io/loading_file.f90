@@ -3,7 +3,7 @@ module rbs_io_loading_file
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, list_of, suggestion, to_text
-   use rbs_io_history, only: elsewhere, history_type, read_history
+   use rbs_io_history, only: elsewhere, history_type, read_history, snippet
    use rbs_io_text_file, only: is_integer
    use rbs_base_check, only: is_given
    use rbs_loading_loading_record, only: loading_record, units_of
@@ -94,6 +94,14 @@ contains
                return
             end do
          else if (is_given(spec%interval)) then
+            if (allocated(history%stated)) then
+               if (index(lower(history%stated), 'hz') > 0) then
+                  call fatal_error(error, bad_input, path//": the rate that a comment states ('"// &
+                                   snippet(history%stated)//"') is not read; remove the comment ("// &
+                                   elsewhere//')')
+                  return
+               end if
+            end if
             time = [((i - 1)*spec%interval, i=1, history%rows)]
          else
             call fatal_error(error, bad_input, path//': has no column with the time; give the time from '// &
@@ -195,14 +203,19 @@ contains
       type(unit_type), allocatable :: units(:)
       character(len=8), allocatable :: names(:)
       character(len=64) :: name
+      logical :: stated
       integer :: i
 
       allocate (units, source=units_of(drive))
       name = unit
-      if (unit_of(history%labels(column)) == '' .and. allocated(history%stated)) then
-         call fatal_error(error, bad_input, path//": the unit that a comment states ('"//history%stated// &
-                          "') is not read; remove the comment and give the unit with unit, or in the "// &
-                          'name of the column')
+      stated = allocated(history%stated) .and. unit_of(history%labels(column)) == ''
+      ! Rates of loading are no units of what is driven.
+      if (stated) stated = index(drive, 'acceleration') > 0 .or. index(lower(history%stated), 'unit') > 0
+      if (stated) stated = unit == '' .or. .not. agrees(lower(history%stated), lower(unit))
+      if (stated) then
+         call fatal_error(error, bad_input, path//": the unit that a comment states ('"// &
+                          snippet(history%stated)//"') is not read; remove the comment and give the "// &
+                          'unit with unit, or in the name of the column ('//elsewhere//')')
          return
       end if
       if (name == '') name = unit_of(history%labels(column))
@@ -217,6 +230,15 @@ contains
                           '; give the right one with unit ('//elsewhere//')')
       end if
    end subroutine convert
+
+   !> Whether a comment has a unit; that of a single letter stands in brackets.
+   pure logical function agrees(comment, unit)
+      character(len=*), intent(in) :: comment, unit
+
+      agrees = index(comment, trim(unit)) > 0
+      if (len_trim(unit) > 1) return
+      agrees = index(comment, '['//trim(unit)//']') > 0 .or. index(comment, '('//trim(unit)//')') > 0
+   end function agrees
 
    !> Values must be small enough that conversion, scale and squares do not overflow.
    subroutine check_range(value, path, column, largest, error)

@@ -34,7 +34,7 @@ module rbs_section_steel_law
       integer :: id = unset_integer
       !> As in `steel_type`
       real(wp) :: fy = unset, fu = unset, es = 200.0e9_wp
-      real(wp) :: eps_sh = 0.007_wp, eps_u = 0.1_wp
+      real(wp) :: eps_sh = unset, eps_u = 0.1_wp
    contains
       procedure :: visit
       procedure :: validate
@@ -91,7 +91,8 @@ contains
       call v%key('fy', self%fy, 'Pa', strengths, 'yield stress')
       call v%key('fu', self%fu, 'Pa', above_zero, 'largest stress; without it 1.5 fy', optional=.true.)
       call v%key('es', self%es, 'Pa', moduli, 'modulus of elasticity')
-      call v%key('eps_sh', self%eps_sh, '', above_zero, 'strain at which hardening begins')
+      call v%key('eps_sh', self%eps_sh, '', above_zero, 'strain at which hardening begins; without it '// &
+                 '0.007, or the yield strain where that is larger', optional=.true.)
       call v%key('eps_u', self%eps_u, '', rupture_strains, 'strain of the largest stress, and of rupture')
    end subroutine visit
 
@@ -117,6 +118,7 @@ contains
 
       law = steel_type(self%fy, self%fu, self%es, self%eps_sh, self%eps_u)
       if (.not. is_given(self%fu)) law%fu = 1.5_wp*self%fy
+      if (.not. is_given(self%eps_sh)) law%eps_sh = max(0.007_wp, steel_yield_strain(law))
    end function law
 
 end module rbs_section_steel_law

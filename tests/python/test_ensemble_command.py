@@ -17,8 +17,6 @@ import rbsdem
 from rbsdem.__main__ import main
 from rbsdem.many import ensemble
 
-pytest.importorskip("pyarrow", reason="the extra 'ensembles' brings pyarrow")
-
 ANALYSIS = "&analysis method = 'newmark', collapse_drift = 0.05 /\n"
 
 

@@ -1,14 +1,15 @@
-"""The store of an ensemble: whole shards or none, nothing twice, nothing of another ensemble."""
+"""The store of an ensemble: rows that are whole or not there, nothing twice, nothing lost."""
 
 from __future__ import annotations
 
-import errno
-import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,18 +18,16 @@ from test_ensembles import column, motion
 import rbsdem
 from rbsdem import InputError
 from rbsdem.many import ensemble, store
-from rbsdem.many.inputs import MEASURES
+from rbsdem.many.inputs import MEASURES, STATUSES
 from rbsdem.many.plan import Plan
 from rbsdem.springs import Elastic
-
-parquet = pytest.importorskip("pyarrow.parquet", reason="the extra 'ensembles' brings pyarrow")
 
 GIVEN = {"scales": np.linspace(0.1, 3.0, 12), "method": "newmark", "jobs": 1}
 
 
 @pytest.fixture(autouse=True)
-def small_shards(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cut the work of these tests into tasks of a run or two, and write each into a shard."""
+def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cut the work of these tests into tasks of a run or two, and commit after each."""
     monkeypatch.setattr(ensemble, "_LONGEST", 1e-6)
     monkeypatch.setattr(store, "_BEAT", 0.0)
 
@@ -37,9 +36,10 @@ def run(folder: Path, **more: object) -> rbsdem.fragility.Ensemble:
     return rbsdem.ensemble([column(), column(15e3)], motion(1), store=folder, **(GIVEN | more))
 
 
-def shards(folder: Path) -> dict[str, int]:
-    """Return the names of the shards and when each was written."""
-    return {path.name: path.stat().st_mtime_ns for path in (folder / "shards").iterdir()}
+def rows(folder: Path, part: str = "1-of-1") -> list[tuple[Any, ...]]:
+    """Return column, scale, status and numbers of each run of a part."""
+    with closing(sqlite3.connect(folder / f"part-{part}.sqlite")) as file:
+        return file.execute("select column_name, scale, status, numbers from runs").fetchall()
 
 
 def same(one: rbsdem.fragility.Ensemble, other: rbsdem.fragility.Ensemble) -> None:
@@ -50,46 +50,35 @@ def same(one: rbsdem.fragility.Ensemble, other: rbsdem.fragility.Ensemble) -> No
 
 
 def test_a_second_start_computes_what_is_missing(tmp_path: Path) -> None:
-    """Missing, cut short, changed by a few bits, or whole under the name of another."""
+    """Rows that were taken away, or all of a file that is damaged and removed."""
     first = run(tmp_path)
-    before = shards(tmp_path)
-    assert len(before) > 4
-    tables = [parquet.read_table(path) for path in (tmp_path / "shards").iterdir()]
-    rows = {(row["column"], row["scale"]): row for table in tables for row in table.to_pylist()}
+    kept = {(name, scale): (status, numbers) for name, scale, status, numbers in rows(tmp_path)}
     for number in range(24):
-        row = rows[str(first.column[number]), first.scale[number]]
-        assert row["status"] == first.status[number]
-        assert row["peak_displacement"] == first.measures["peak_displacement"][number]
-    again = run(tmp_path)
-    assert again.resumed == len(again) == 24
-    assert shards(tmp_path) == before
-    same(first, again)
-    paths = sorted((tmp_path / "shards").iterdir())
-    number = first.measures["residual_displacement"][5].tobytes()
-    (hit,) = (path for path in paths if number in path.read_bytes())
-    hit.write_bytes(hit.read_bytes().replace(number, np.float64(0.01).tobytes()))
-    one, other, third, fourth = [path for path in paths if path != hit][:4]
-    one.unlink()
-    other.write_bytes(b"PAR1")
-    third.write_bytes(fourth.read_bytes())
-    leftover = tmp_path / "shards" / f"1-of-1-{'0' * 32}.parquet.1-1.partial"
-    leftover.touch()
+        status, numbers = kept[str(first.column[number]), first.scale[number]]
+        assert STATUSES[status] == first.status[number]
+        assert (
+            np.frombuffer(numbers)[0] == first.measures[ensemble.inputs.core_measures()[0]][number]
+        )
+    path = tmp_path / "part-1-of-1.sqlite"
+    with closing(sqlite3.connect(path, isolation_level=None)) as file:
+        file.execute("delete from runs where scale > 1.0")
+    left = len(rows(tmp_path))
     again = run(tmp_path, jobs=2)
-    assert 0 < again.resumed < 24
-    assert not leftover.exists()
+    assert 0 < again.resumed == left < 24
     same(first, again)
-    after = shards(tmp_path)
-    changed = {name for name in before if before[name] != after.get(name)}
-    assert changed <= {path.name for path in (one, other, third, hit)}
-    (tmp_path / "manifest.json").unlink()
     assert run(tmp_path).resumed == 24
-    assert len(json.loads((tmp_path / "manifest.json").read_text())["columns"]) == 2
+    path.write_bytes(path.read_bytes()[:5000])
+    with pytest.raises(InputError, match=r"1-of-1.sqlite: .*; it is damaged, remove it"):
+        run(tmp_path)
+    path.unlink()
+    same(first, run(tmp_path))
+
+
+def swing(result: rbsdem.Result) -> float:
+    return float(np.ptp(result.displacement))
 
 
 def test_failed_runs_and_measures_of_functions_come_back(tmp_path: Path) -> None:
-    def swing(result: rbsdem.Result) -> float:
-        return float(np.ptp(result.displacement))
-
     elastic = rbsdem.Column(1.6, 600.0, Elastic(7e7), Elastic(2.5e8))
     given = {"method": "rk4", "dt": 5e-3, "allow_unstable": True, "scales": [0.0, 1.0]}
     given["collapse_drift"] = None
@@ -138,9 +127,6 @@ def test_what_is_added_is_computed_alone(
     assert found.resumed == 24
     assert sum(done) == len(found) - 24 == {"column": 12, "motion": 24, "scale": 2}[what]
     same(found, rbsdem.ensemble(columns, motions, **given))
-    manifest = json.loads((tmp_path / "manifest.json").read_text())
-    assert len(manifest["columns"]) == len(columns)
-    assert len(manifest["motions"]) == len(motions)
 
 
 @pytest.mark.parametrize("parts", [2, 3])
@@ -188,72 +174,58 @@ def test_ctrl_c_is_an_exception_with_what_is_done(
     same(run(tmp_path), rbsdem.ensemble([column(), column(15e3)], motion(1), **GIVEN))
 
 
-def test_what_is_no_store_of_these_runs(tmp_path: Path) -> None:
-    """Numbers of numpy in settings are those of Python; all measures are kept."""
-    place = tmp_path / "store"
-    run(place, dt=np.float32(0.0078125), measures=["peak_drift"])
-    again = run(place, dt=0.0078125)
+def test_runs_of_other_settings_and_measures_are_others(tmp_path: Path) -> None:
+    """They stand side by side; numbers of numpy are those of Python; all measures are kept."""
+    run(tmp_path, dt=np.float32(0.0078125), measures=["peak_drift"])
+    again = run(tmp_path, dt=0.0078125)
     assert (again.resumed, list(again.measures)) == (24, list(MEASURES))
-    path = place / "manifest.json"
-    manifest = json.loads(path.read_text())
-    settings = {"method": "newmark", "dt": 0.0078125, "collapse_drift": 0.1}
-    assert manifest["settings"] == settings
-    entries = list(manifest["columns"].values())
-    assert [entry["name"] for entry in entries] == ["0", "1"]
-    assert "&column" in entries[0]["case"]
+    for more in ({"dt": 0.01}, {"measures": ["cracking"]}, {"measures": [swing]}):
+        given = {"dt": 0.0078125} | more
+        assert [run(tmp_path, **given).resumed for _ in range(2)] == [0, 24]
+    assert run(tmp_path, dt=0.0078125).resumed == 24
+
+
+def test_what_cannot_be_a_store(tmp_path: Path) -> None:
     (tmp_path / "thesis.docx").write_text("")
     for folder, more, words in (
-        (place, {"dt": 0.01}, "their settings differ"),
-        (place, {"dt": 0.0078125, "measures": [lambda result: 1.0]}, "name of its own"),
-        (place, {"dt": 0.0078125, "measures": ["cracking"]}, "their measures differ"),
-        (place, {"shard": (0, 2)}, "shard = "),
-        (place, {"shard": (3, 2)}, "shard = "),
-        (place, {"shard": 2}, "shard = "),
-        (tmp_path / "new", {"seeds": {1, 2}}, r"seeds: the manifest .* takes what JSON takes"),
-        (tmp_path, {}, r"holds other files \("),
-        (tmp_path / "thesis.docx", {}, "no folder"),
+        (tmp_path, {"measures": [lambda result: 1.0]}, "name of its own"),
+        (tmp_path, {"shard": (0, 2)}, "shard = "),
+        (tmp_path, {"shard": (3, 2)}, "shard = "),
+        (tmp_path, {"shard": 2}, "shard = "),
+        (tmp_path / "thesis.docx", {}, "File exists; give another path"),
     ):
         with pytest.raises(InputError, match=words):
             run(folder, **more)
-    for text, words in ((json.dumps(manifest | {"version": "0.0.9"}), "0.0.9"), ("{}", "no manif")):
-        path.write_text(text)
-        with pytest.raises(InputError, match=words):
-            run(place, dt=0.0078125)
 
 
 def test_two_at_one_part(tmp_path: Path) -> None:
-    """The second is refused as long as the first is at work, whatever the number of its parts."""
-    fcntl = pytest.importorskip("fcntl")
+    """The second is refused as long as the first writes; other parts read what it has committed."""
     run(tmp_path, shard=(2, 3))
-    with (tmp_path / "part-2-of-3.lock").open("ab") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        with pytest.raises(InputError, match="another process is at work on part 2 of 3"):
-            run(tmp_path)
-        run(tmp_path, shard=(1, 3))
+    path = tmp_path / "part-2-of-3.sqlite"
+    with closing(sqlite3.connect(path, isolation_level=None)) as file:
+        file.execute("begin immediate")
+        file.execute("delete from runs")
+        with pytest.raises(InputError, match=r"another process is at work on .*part-2-of-3"):
+            run(tmp_path, shard=(2, 3))
+        assert run(tmp_path, shard=(1, 3)).resumed == 8
     assert "" not in run(tmp_path).status
 
 
 def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What was written before stays whole, nothing half written is left."""
-    written = []
-    real = store.atomic_write
+    """What was committed before stays, and a new start goes on from there."""
+    real = store._connection
 
-    def full(path: Path) -> object:
-        written.append(path)
-        if len(written) > 4:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return real(path)
+    def small(path: Path, patience: float = 60.0) -> sqlite3.Connection:
+        file = real(path, patience)
+        file.execute("pragma max_page_count = 4")
+        return file
 
-    monkeypatch.setattr(store, "atomic_write", full)
-    with pytest.raises(OSError, match=r"No space left on device; the shards .* are kept"):
+    monkeypatch.setattr(store, "_connection", small)
+    with pytest.raises(OSError, match=r"disk is full; the runs that were written before are kept"):
         run(tmp_path)
     monkeypatch.undo()
-    kept = shards(tmp_path)
-    assert len(kept) == 3
-    assert all(name.endswith(".parquet") for name in kept)
-    again = run(tmp_path)
-    assert 0 < again.resumed < 24
-    assert kept.items() <= shards(tmp_path).items()
+    assert 0 < run(tmp_path).resumed < 24
+    assert run(tmp_path).resumed == 24
 
 
 PROGRAM = """\
@@ -271,27 +243,21 @@ def said(wanted, total):
     yield lambda done, text: print(done, flush=True)
 ensemble.progress_bar = said
 rbsdem.ensemble([column(), column(15e3)], motion(1, 4000, 0.005), store={folder!r},
-                scales=np.linspace(0.1, 3.0, 80), method="rk4", dt={dt}, jobs=1)
+                scales=np.linspace(0.1, 3.0, 80), method="rk4", dt={dt}, jobs=1, shard={part})
 """
 
 
 def begin(folder: Path, **more: object) -> list[object]:
     """Return the command of a program that runs 160 runs in tasks of a few."""
-    given = {"longest": 0.05, "beat": 0.0, "dt": None} | more
+    given = {"longest": 0.05, "beat": 0.0, "dt": None, "part": (1, 1)} | more
     tests = os.fspath(Path(__file__).parent)
     return [sys.executable, "-c", PROGRAM.format(tests=tests, folder=os.fspath(folder), **given)]
-
-
-def rows(folder: Path) -> list[tuple[str, float]]:
-    """Return column and scale of each row of the shards."""
-    tables = [parquet.read_table(path) for path in (folder / "shards").glob("*.parquet")]
-    return [(row["column"], row["scale"]) for table in tables for row in table.to_pylist()]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals) -> None:
-    """In tasks of which none has ended, and although no shard was due yet."""
+    """In tasks of which none has ended, and although nothing was due yet."""
     command = begin(tmp_path, longest=1e3, beat=1e3, dt=2e-5)
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, **pipes) as process:
@@ -299,7 +265,7 @@ def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals
         for line in process.stdout:
             if int(line) > 0:
                 break
-        assert not list((tmp_path / "shards").iterdir())
+        assert not rows(tmp_path)
         process.send_signal(number)
         out, err = process.communicate(timeout=60)
     ended = int(out.split()[-1])
@@ -310,3 +276,29 @@ def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals
     else:
         assert process.returncode == 1
         assert f"Interrupted: ensemble: interrupted after {ended} of 160 runs" in err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_a_process_that_is_killed_leaves_what_it_has_committed(tmp_path: Path) -> None:
+    """And a journal, from which the next one that opens the file takes back what was half done."""
+    with subprocess.Popen(begin(tmp_path, dt=5e-4), stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            if int(line) > 8:
+                break
+        process.kill()
+    kept = len(rows(tmp_path))
+    assert 0 < kept < 160
+    subprocess.run(begin(tmp_path, dt=5e-4), check=True, capture_output=True)
+    assert len(rows(tmp_path)) == 160
+
+
+def test_several_processes_write_at_once(tmp_path: Path) -> None:
+    """Each part has its file, which the others read while it is written."""
+    parts = [(number, 3) for number in (1, 2, 3)]
+    works = [
+        subprocess.Popen(begin(tmp_path, part=part), stdout=subprocess.DEVNULL) for part in parts
+    ]
+    assert [work.wait(120) for work in works] == [0, 0, 0]
+    known = [row[:2] for part in parts for row in rows(tmp_path, "{}-of-{}".format(*part))]
+    assert len(set(known)) == len(known) == 160

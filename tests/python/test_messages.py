@@ -281,7 +281,7 @@ def doors(run_cli, case_text, folder, by_file, capsys) -> dict[str, Tell]:
     def command(given: str) -> list[str]:
         (folder / "case.nml").write_text(case_text(**DYNAMIC))
         assert main(shlex.split(given)[1:]) == 2
-        assert set(os.listdir(folder)) <= {"case.nml", "out"}
+        assert set(os.listdir(folder)) <= {"case.nml", "out", "case-trade"}
         told = capsys.readouterr()
         assert told.out == ""
         return told.err.splitlines()

@@ -273,7 +273,11 @@ def test_a_wrong_value_of_one_column_is_named(wrong):
         (rows(TWO, "UNITS: IN/SEC/SEC\n"), {"units": "g"}, "accelerations are in in/s2"),
         (rows(TWO, "ACCELERATION (CM/SEC2)\n", " "), {"units": "g"}, "accelerations are in cm/s2"),
         (rows(TWO, "Time (s)  Acc (gal)\n", " "), {"units": "g"}, "accelerations are in cm/s2"),
-        (rows(TWO, "UNITS: cubits\n"), {"units": "g"}, "the unit 'cubits' of 'UNITS: cubits' is"),
+        (rows(TWO, "UNITS: cubits\n"), {"units": "g"}, "the unit of 'UNITS: cubits' is not one of"),
+        (rows(TWO, "Acc in milli-g\n"), {"units": "g"}, "the unit of 'Acc in milli-g' is not one"),
+        (rows(TWO, "PGA = 3.2 cm/s2\n"), {}, "(does 'PGA = 3.2 cm/s2' state it?)"),
+        (rows(TWO, "PGA = 3.2 cm/s2\n"), {"units": "g"}, "'PGA = 3.2 cm/s2' states 0.032 m/s2"),
+        (rows(ONE, "9\n0.02\n"), {"units": "g"}, "no column with the time"),
         (rows(TWO, "UNITS: g\nACC UNIT: gal\n"), {}, "states the units g ('UNITS: g') and cm/s2"),
         (rows(TWO, "UNITS: gal\ntime_s,acceleration_g\n"), {}, "is in g, and a line above says cm"),
         (rows(ONE, "DT=0.01\nUNITS: g\n"), {"dt": 0.02}, "step is 0.01 s, and dt = 0.02 s was"),
@@ -295,6 +299,110 @@ def test_what_contradicts_the_file_is_refused(text, options, said):
     assert said in str(caught.value)
     if "no ground" in said:
         assert motions.read_motion(text, checks=False).pga == pytest.approx(300 * G)
+
+
+#: Lines of other laboratories that state a unit, in no words that a list has.
+STATED = {
+    "m/s2": ["# Unidad: m/s2", "# Beschleunigung in m/s²", "Accélération (m.s-2)",
+             "# amplitude m s-2", "Values in metres per second squared", "# ivme birimi: m/sn2",
+             "#ACC_UNIT=m/s**2",
+             "acc/vel/disp: m/s2 / m/s / m", "acc/vel/disp: m/s2/m/s/m", "UNITS: SEC, M/SEC/SEC"],
+    "cm/s2": ["#AmplitudeUnit: gal", "# Gal (cm/s/s)", "acceleration in gals", "Ivme (cm/sn2)",
+              "# cm/(s^2)", "unit cm s^-2", "3 channels, in Gal", "units: gal/kine/cm",
+              "UNITS=cm/s2/cm/s/cm", "Einheit: Gal", "Unité: cm/s²"],
+    "g": ["# Unidad: g", "units: G", "UNITS: (g)", "Acc/Vel/Disp: g / cm/s / cm", "Einheit = g",
+          "Acc/Vel/Disp: g/cm/s/cm", "# acc in g's", "in units of g, filtered", "# amplitudes [g]"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("unit", STATED)
+def test_a_unit_is_a_statement_in_any_words(unit):
+    """It is taken, and another one that the caller gives is refused."""
+    factor = motions.read.UNITS[unit] / G
+    for line in STATED[unit]:
+        for lines, options in ((in_unit(factor), {}), (ONE, {"dt": 0.02})):
+            values = [row.split()[-1] for row in in_unit(factor)] if lines is ONE else lines
+            text = rows(values, f"Title\n{line}\n", " ")
+            for units in (None, unit):
+                motion = motions.read_motion(text, units, **options)
+                assert motion.acceleration == pytest.approx(G * np.array(VALUES), rel=1e-14), line
+            for other in set(STATED) - {unit}:
+                with pytest.raises(InputError, match=f"are in {unit}, and units = '{other}'"):
+                    motions.read_motion(text, other, **options)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["# Muestreo: 50 Hz", "Paso: 0.02 s", "# Intervalo (s): 0.02", "50 muestras por segundo",
+     "Abtastrate 50 Hz", "at 50 samples/s", "Fs = 50Hz", "# rate: 50 1/s",
+     "Sampling rate: 0.05 kHz", "dt 20 ms", "sampling rate (samples/sec): 50",
+     "Pas de temps : 20 ms", "DT: 2.0E-02", "spaced at 0.02 sec. intervals", "# 7 pts at 0.02 s"],
+)  # fmt: skip
+def test_a_rate_or_a_time_that_may_be_the_step_is_asked_for(line):
+    for lines, options in ((ONE, {"dt": 0.02}), (TWO, {})):
+        text = rows(lines, f"{line}\n", " ")
+        assert motions.read_motion(text, "g", **options).dt == 0.02
+    for dt in (0.01, 0.04):
+        with pytest.raises(InputError, match=r"may state 0\.02 s|its step is 0\.02 s"):
+            motions.read_motion(rows(ONE, f"{line}\n"), "g", dt)
+    motion = motions.read_motion(rows(ONE, "# Muestreo: 50 Hz\n"), "g", 0.01, checks=False)
+    assert motion.dt == 0.01
+
+
+def test_the_executable_leaves_comments_with_units_to_python(file, tmp_path):
+    case = tmp_path / "case.nml"
+    case.write_text(
+        "&column height = 2, mass = 1000 /\n&shear rule = 'elastic', k = 1e7 /\n"
+        "&flexure rule = 'elastic', k = 1e7 /\n"
+        "&loading drive = 'ground_acceleration', file = 'a.txt', unit = 'g', interval = 0.01 /\n"
+    )
+    # It knows a unit of one letter in brackets, if it is the one that is given.
+    comments = [line for lines in STATED.values() for line in lines if line[0] == "#"]
+    comments.remove("# amplitudes [g]")
+    for line in [*comments, "# Muestreo: 50 Hz"]:
+        file(rows(ONE, f"{line}\n"), "a.txt")
+        with pytest.raises(InputError, match=r"that a comment states .* is not read"):
+            rbsdem.read_case(case)
+    file(rows(ONE, "# Station A, event 3\n"), "a.txt")
+    assert rbsdem.read_case(case).ground_acceleration.max() == pytest.approx(0.3 * G)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["# Filter: 0.1 - 40 Hz", "Duration 40 s", "Filtered HP=0.1 Hz LP=40.0 Hz", "Peak at 3.2 s",
+     "Recorded 1994-01-17 12:30:55 at 34.21 N", "Vs30 760 m/s", "PGA = 0.3 g", "PGV 23 cm/s",
+     "UNITED STATES GEOLOGICAL SURVEY", "University community station", "10/15/1979, 23:16:54 UTC"],
+)  # fmt: skip
+def test_other_numbers_of_a_head_state_nothing(line):
+    for lines, options in ((ONE, {"dt": 0.02}), (TWO, {})):
+        motion = motions.read_motion(rows(lines, f"{line}\n", " "), "g", **options)
+        assert motion.acceleration == pytest.approx(G * np.array(VALUES), rel=1e-14)
+
+
+@pytest.mark.parametrize("width", [1, 3, 5])
+@pytest.mark.parametrize("head", ["7\n0.02\n", "7 0.02\n", "Title\n7\n0.02\n", "7\n"])
+def test_a_first_number_is_the_count_of_the_others(head, width):
+    """Then a step below or beside it; one that is not their count is no acceleration either."""
+    lines = (" ".join(ONE[i : i + width]) for i in range(0, len(ONE), width))
+    dt = 0.02 if head == "7\n" else None
+    motion = motions.read_motion(head + "\n".join(lines) + "\n", "g", dt)
+    assert motion.acceleration == pytest.approx(G * np.array(VALUES), rel=1e-14)
+    assert motion.dt == 0.02
+    with pytest.raises(InputError, match="first line, 31, may be the number of the values, but 30"):
+        motions.read_motion("31\n" + "\n".join(["0.1", "0.2", "0.3"] * 10), "cm/s2", 0.02)
+
+
+@pytest.mark.parametrize("width", [3, 5, 8])
+def test_lines_of_values_without_a_head_are_one_record(width):
+    """A smooth record goes on in the line, components go on below each other."""
+    record = np.sin(0.3 * np.arange(100)) * np.exp(-0.01 * np.arange(100))
+    lines = (" ".join(map(repr, record[i : i + width].tolist())) for i in range(0, 100, width))
+    motion = motions.read_motion("\n".join(lines), "g", 0.01)
+    assert motion.acceleration == pytest.approx(G * record, rel=1e-14)
+    beside = np.column_stack([record * (i - 2.5) for i in range(width)])
+    text = "\n".join(" ".join(map(repr, row)) for row in beside.tolist())
+    with pytest.raises(InputError, match=f"has {width} columns without names"):
+        motions.read_motion(text, "g", 0.01)
 
 
 def test_exponents_of_three_digits_have_no_letter(file):
@@ -332,6 +440,21 @@ def test_a_folder_is_read_in_the_order_of_names(file, tmp_path):
     file("notes", "readme.md")
     assert [motion.name for motion in motions.read_motions(tmp_path)] == ["a", "b"]
     assert [motion.name for motion in motions.read_motions(tmp_path, pattern="b*")] == ["b"]
+
+
+def test_a_list_and_a_readme_beside_records_are_left_out_and_told(file, tmp_path):
+    """As the PEER database packs them."""
+    file(NEW + ROWS, "RSN6_H1.AT2")
+    file("PEER Ground Motion Database\nPlease cite.\n", "_readME.txt")
+    file(
+        "-- Summary of Metadata of Selected Records --\nResult ID,Scale Factor,Earthquake Name,"
+        'Acc. Filename\n1,-,"Imperial Valley-02",RSN6_H1.AT2\n\n-- Scaled Spectra --\nPeriod (sec),'
+        "RSN-6 pSa (g)\n0.01,0.28\n0.02,0.29\n0.03,0.31\n",
+        "_SearchResults.csv",
+    )
+    said = "left out beside the records of a database: .*_SearchResults.csv.*_readME.txt"
+    with pytest.warns(RepairWarning, match=said):
+        assert [motion.name for motion in motions.read_motions(tmp_path)] == ["RSN6_H1"]
 
 
 def test_all_bad_files_of_a_folder_are_told_at_once(file, tmp_path):

@@ -118,16 +118,14 @@ def test_package_works_from_a_folder_with_files_of_its_name(tmp_path):
 
 @pytest.mark.parametrize(
     ("package", "extra", "what"),
-    [
-        ("pyarrow", "ensembles", "rbsdem.ensemble(column, ([0, 1], [0, 1]), store='nowhere')"),
-    ],
+    [("pyarrow", "parquet", "rbsdem._package.extra('pyarrow.parquet')")],
 )
 def test_extra_that_is_missing_is_named(package, extra, what):
     """The line for pip names an extra that pyproject.toml has, and docs/install.md knows it."""
     code = f"""
 import sys
 sys.modules[{package!r}] = None
-import rbsdem
+import rbsdem, rbsdem._package
 column = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
 try:
     {what}

@@ -135,6 +135,65 @@ def test_columns_of_texts_and_clocks_are_left_out_and_said(tmp_path):
         read_test(tmp_path / "t.txt", columns=("top", "remark"), **NAMED)
 
 
+LVM = """\
+LabVIEW Measurement\t
+Separator\tTab
+Multi_Headings\tNo
+Date\t2020/01/02
+***End_of_Header***\t
+\t
+Channels\t2\t\t
+Samples\t90\t90\t
+Date\t2020/01/02\t2020/01/02\t
+Y_Unit_Label\tmm\tkN\t
+X_Dimension\tTime\tTime\t
+X0\t0.0000000000000000E+0\t0.0000000000000000E+0\t
+Delta_X\t0.033708\t0.033708\t
+***End_of_Header***\t\t\t
+X_Value\tTop\tRam\tComment
+"""
+MTS = """\
+MTS793|MPT|ENU|1|2|.|/|:|1|0|0|A
+Data Acquisition: cyclic
+Station Name:\tframe.cfg
+
+Time\tTop\tRam\tAxial Count
+Sec\tmm\tkN\tsegments
+"""
+
+
+@pytest.mark.parametrize(
+    ("head", "separator", "number", "more", "end"),
+    [
+        (LVM, "\t", point, (), "\t"),
+        (LVM, "\t", comma, (), "\t"),
+        (MTS, "\t", point, ("1.5",), ""),
+        ('"Time ","Top ","Ram "\n"sec ","mm ","kN "\n', ",", point, (), ""),
+        ("Time,Top,Ram,gauge,T\ns,mm,kN,mV/V,degF\n", ",", point, ("0.5", "68.2"), ""),
+    ],
+    ids=["lvm", "lvm with commas", "mts", "mts in quotes", "unknown units"],
+)
+def test_exports_of_programs_are_read_by_names(tmp_path, head, separator, number, more, end):
+    """A unit that is not known loses no names, and a column of remarks without one none."""
+    path = write(tmp_path / "t.lvm", head, separator, number, more=more, end=end)
+    test = read_test(path, columns=("Top", "Ram"), **NAMED)
+    np.testing.assert_allclose(test.displacement, D, rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(test.force, F, rtol=1e-5, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "head", ["t,d,f\ns,mm,kN\n1,2,3\n", "t,d_mm,f_kN\n0,1,2\n", "1,2,3\nt,d,f\ns,mm,kN\n"]
+)
+def test_numbers_of_channels_are_no_row(tmp_path, head):
+    path = write(tmp_path / "t.csv", head, ",", lambda value: f"{value:.4f}")
+    if head[0] == "t":
+        with pytest.warns(rbsdem.errors.RepairWarning, match="numbers of channels are left out"):
+            test = read_test(path, **NAMED)
+    else:
+        test = read_test(path, **NAMED)
+    np.testing.assert_allclose(test.displacement, D, atol=1e-7)
+
+
 @pytest.mark.parametrize("separator", ["\n", " ", ","])
 def test_displacement_and_force_in_two_files(tmp_path, separator):
     """One value a line, or all in a line."""
@@ -176,7 +235,9 @@ def test_offset_of_the_first_row(tmp_path):
     """Refused until the user says what it is."""
     rows = np.column_stack((1e3 * D + 4, 1e-3 * F + 1))
     np.savetxt(tmp_path / "t.csv", rows, delimiter=",", header="d_mm,f_kN", comments="")
-    with pytest.raises(InputError, match=r"first displacement is 0.004 m, 1. %.*zero=True"):
+    with pytest.raises(
+        InputError, match=r"first displacement is 0.004 m, 1. %.*zero=True.*or header= if"
+    ):
         read_test(tmp_path / "t.csv", **NAMED)
     zeroed = read_test(tmp_path / "t.csv", zero=True, **NAMED)
     np.testing.assert_allclose(zeroed.displacement, D - D[0], atol=1e-12)

@@ -174,6 +174,10 @@ def test_what_follows_from_others_follows_their_changes():
     assert dataclasses.replace(section, side_cover=0.03, cover=0.05).side_cover == 0.03
     assert dataclasses.replace(Steel(400e6), fy=500e6) == Steel(500e6)
     assert dataclasses.replace(Steel(400e6, 550e6), fy=500e6).fu == 550e6
+    # Hardening begins after yield, also where nobody says when, as in hoops of 1451 MPa.
+    assert (Steel(400e6).eps_sh, Steel(1451e6).eps_sh) == (0.007, 1451e6 / 200e9)
+    assert Steel(1451e6).stress(0.00726) == pytest.approx(1451e6, rel=1e-3)
+    assert dataclasses.replace(Steel(1451e6), fy=500e6).eps_sh == 0.007
     assert dataclasses.replace(section, layout=None).bars == section.bars
     with pytest.raises(InputError, match="give bars or layout"):
         dataclasses.replace(section, bars=[(0.1, 2e-4, STEEL)])

@@ -244,14 +244,13 @@ def ensemble(
     Method, step, collapse drift and initial state are those of the case.
 
     \b
-    Files (--out): store/ (finished runs in Parquet files of a few seconds of work each),
+    Files (--out): store/ (finished runs, a database of SQLite for each part),
     runs.csv (one row per run, written when all parts are finished).
     A second start computes only what the store does not hold: after an interruption, or with more
     records or scales. In a job array, give every job the same command with --shard I/N.
     Exit codes: 0 every run was completed or collapsed, 1 some failed, 2 the input is wrong,
     130 interrupted by the keyboard (finished runs are kept).
     """
-    extra("pyarrow.parquet")
     model = read_case(case)
     if model.method == "static":
         raise InputError(

@@ -342,7 +342,6 @@ def ensemble(
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
     shard: tuple[int, int] | None = None,
-    seeds: Any = None,
     client: Any = None,
     progress: bool = False,
     allow_partial: bool = False,
@@ -383,15 +382,11 @@ def ensemble(
     store : path-like, optional
         A folder that keeps the runs, written every few seconds, and the rest at Ctrl-C and SIGTERM.
         A second start computes the runs that are missing there, after whatever end of the first,
-        and so does one with more columns, motions or scales. Needs pyarrow
-        (``pip install "rbsdem[ensembles]"``).
+        and so does one with more columns, motions or scales.
     shard : tuple of two int, optional
         (i, n): do part i of n, from 1 to n, for jobs that share the work and the store. The parts
         are expected to take as long. Runs of the other parts are in the result if the store has
         them.
-    seeds : optional
-        Seeds that the inputs were drawn with, for the manifest of the store: anything that JSON
-        takes.
     client : dask.distributed.Client, optional
         A cluster that does the work in place of threads.
     progress : bool, optional
@@ -455,7 +450,7 @@ def ensemble(
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
-        kept = Store(_arguments.path(store), plan, own_names, part, seeds)
+        kept = Store(_arguments.path(store), plan, own_names, part)
     own = _of_part(each.size, part)
     outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
     states = zip(column_names, before, strict=True)
@@ -626,7 +621,7 @@ def _told(found: Ensemble, store: Any) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value of Python in place of one of numpy, which a manifest does not take."""
+    """Return a value of Python in place of one of numpy, which has another text."""
     return value.item() if isinstance(value, np.generic) else value
 
 

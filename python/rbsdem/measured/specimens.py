@@ -714,7 +714,7 @@ def draw(specimen: Specimen) -> DrawnSpecimen:
         bars = _round(specimen, cover + (tie or 0.0), diameter, corner)
     else:
         bars = _rectangle(sheet, cover + (tie or 0.0), diameter, corner, intermediate)
-    steels = {stresses: _steel(*stresses) for _, _, stresses in bars}
+    steels = {stresses: Steel(*stresses) for _, _, stresses in bars}
     given: dict[str, Any] = {
         "concrete": Concrete(specimen.concrete_strength),
         "bars": [(y, area, steels[stresses]) for y, area, stresses in bars],
@@ -727,7 +727,7 @@ def draw(specimen: Specimen) -> DrawnSpecimen:
         hoop_yield = sheet.guessed("transverse_yield_stress", corner[0], said)
         ultimate = specimen.transverse_ultimate_stress or ULTIMATE_OVER_YIELD * hoop_yield
         hoops = {"diameter": tie, "spacing": specimen.transverse_spacing}
-        hoops["steel"] = _steel(hoop_yield, ultimate)
+        hoops["steel"] = Steel(hoop_yield, ultimate)
     section: Section
     if circular:
         spiral = Spiral(**hoops) if hoops else None
@@ -805,12 +805,6 @@ def _check(specimen: Specimen) -> None:
                 f"{remedy}"
             )
     _arguments.raise_faults(faults)
-
-
-def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
-    """Return a steel; a very strong one has no plateau."""
-    hardens = max(Steel.eps_sh, 1.001 * yield_stress / Steel.es)
-    return Steel(yield_stress, ultimate_stress, eps_sh=hardens)
 
 
 def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:

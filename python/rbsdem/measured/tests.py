@@ -754,8 +754,8 @@ def _check_offset(d: Array, f: Array, zero: bool | None, where: str) -> None:
         if share > _OFFSET:
             raise InputError(
                 f"{where}: the first {quantity} is {values[0]:.4g} {si}, {100 * share:.0f} % of "
-                "the largest; say zero=True to take the first row off all others, or zero=False if "
-                "the test does begin there"
+                "the largest; say zero=True to take the first row off all others, zero=False if "
+                "the test does begin there, or header= if that line is no row of the test"
             )
 
 

@@ -453,7 +453,7 @@ def find_physics(
     """Return the effect of each part of the model, or the reason why it is not known."""
     column = trials.case.column
     if not isinstance(column, Column):
-        return "no part of a frame is switched"
+        return ""
     several = list(variants(trials.case, column, axial))
     weight = len(several) + TWICE_THE_BODIES + 1
     base = _base(trials, reference, trials.budget.left() / weight)

@@ -309,7 +309,7 @@ def compare_methods(
         known = reference if isinstance(reference, Reference) else None
         physics = find_physics(trials, known, tolerance, axial_spring)
     warnings = [f"reference: {reference}"] if known is None else []
-    if isinstance(physics, str):
+    if isinstance(physics, str) and physics:
         warnings.append(f"physics: {physics}")
     rows = make_rows(trials.runs, known)
     choice = None if tolerance is None else choose(rows, tolerance)

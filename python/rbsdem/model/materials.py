@@ -106,7 +106,7 @@ class Steel:
     es : float, optional
         Modulus of elasticity [Pa].
     eps_sh : float, optional
-        Strain at which hardening begins.
+        Strain at which hardening begins; by default 0.007, or the yield strain where it is larger.
     eps_u : float, optional
         Strain of the largest stress, and of rupture.
 
@@ -119,18 +119,20 @@ class Steel:
     fy: float
     fu: float | None = None
     es: float = 200e9
-    eps_sh: float = 0.007
+    eps_sh: float | None = None
     eps_u: float = 0.1
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "steel")
         if given(self.fu) is None:
             object.__setattr__(self, "fu", Derived(1.5 * self.fy))
+        if given(self.eps_sh) is None:
+            object.__setattr__(self, "eps_sh", Derived(max(0.007, self.fy / self.es)))
         _core.check_law("steel_response", *self.statement())
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
-        values = {f.name: getattr(self, f.name) for f in fields(self)} | {"fu": given(self.fu)}
+        values = {f.name: given(getattr(self, f.name)) for f in fields(self)}
         return _core.group("steel", {"id": number} | values)
 
     def stress(self, strain: ArrayLike) -> Array:

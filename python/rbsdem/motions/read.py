@@ -9,7 +9,6 @@ statement that is not understood is named.
 
 from __future__ import annotations
 
-import itertools
 import math
 import os
 import re
@@ -19,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._tables import STANDARD_GRAVITY, NumberTable, read_lines, read_table
+from rbsdem._tables import STANDARD_GRAVITY, NumberTable, plain, read_lines, read_table
 from rbsdem._types import Array
 from rbsdem.errors import InputError, RepairWarning, warn
 from rbsdem.motions.motion import GroundMotion
@@ -30,7 +29,15 @@ UNITS = {
     "ft/s2": 0.3048,
 }  # fmt: skip
 
-_SPELLINGS = {"gal": "cm/s2", "gals": "cm/s2", "g's": "g", "gs": "g"}
+_NUM = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
+_SECOND = r"(?:s(?:ec(?:onds?)?|eg(?:undos?)?|ek(?:unden?)?|n)?)"
+#: A length over the square of a time, in small letters, as "cm/s/s", "cm/sec**2", "m s-2".
+_PER_SECOND_SQUARED = (
+    r"((?:milli|centi)?met(?:er|re)s?|[mc]?m|in(?:ch(?:es)?)?|f(?:oo|ee)?t)"
+    rf"\s*(?:[/.*·]|per\b|(?<=m)(?=\s))\s*\(?{_SECOND}\)?\s*"
+    rf"(?:(?:/|per\b)\s*{_SECOND}|(?:\^|\*\*)?[({{]?\s*-?2|squared)[)}}]?(?![a-z0-9])"
+)
+_LENGTHS = {"mi": "mm", "ce": "cm", "me": "m", "fo": "ft", "fe": "ft"}
 
 
 def unit_named(word: str) -> str:
@@ -41,13 +48,13 @@ def unit_named(word: str) -> str:
     word : str
         As in a file: "G", "cm/s/s", "cm/sec**2", "gal", "m/s^2".
     """
-    plain = word.strip().strip("()[].,:;").lower().replace(" ", "").replace("sec", "s")
-    for power in ("/s/s", "/s^2", "/s**2", "/s²", "s^-2", "s-2", "/s2"):
-        if plain.endswith(power):
-            plain = plain.removesuffix(power).rstrip(".*·") + "/s2"
-            break
-    plain = _SPELLINGS.get(plain, plain)
-    return plain if plain in UNITS else ""
+    text = plain(word).strip().strip("()[].,:;").strip()
+    if text in ("g", "gs", "g's"):
+        return "g"
+    if text in ("gal", "gals"):
+        return "cm/s2"
+    match = re.fullmatch(_PER_SECOND_SQUARED, text)
+    return f"{_LENGTHS.get(match[1][:2], match[1][:2])}/s2" if match else ""
 
 
 def checked_unit(units: str, who: str) -> str:
@@ -58,41 +65,44 @@ def checked_unit(units: str, who: str) -> str:
     return name
 
 
-def agreed_unit(found: str, given: str | None, who: str) -> str:
+def agreed_unit(stated: str, wanted: str | None, who: str, line: str = "") -> str:
     """Return the unit of a file: the one that it names, or the one that the user gives.
 
     Parameters
     ----------
-    found : str
+    stated : str
         The unit that the file names; empty if it names none.
-    given : str or None
+    wanted : str or None
         The unit that the user gives.
     who : str
         Beginning of a message.
+    line : str, optional
+        A line that has a unit, but not clearly that of the values.
 
     Raises
     ------
     InputError
         If the two differ, or if there is none: a unit is never guessed.
     """
-    wanted = "" if given is None else checked_unit(given, who)
-    if found and wanted and found != wanted:
+    unit = "" if wanted is None else checked_unit(wanted, who)
+    if stated and unit and stated != unit:
         raise InputError(
-            f"{who}the file says that its accelerations are in {found}, and units = {given!r} was "
-            "given; leave units out, or correct the file"
+            f"{who}the file says that its accelerations are in {stated}, and units = {wanted!r} "
+            "was given; leave units out, or correct the file"
         )
-    if not (found or wanted):
+    if not (stated or unit):
+        asked = f" (does {line!r} state it?)" if line else ""
         raise InputError(
-            f"{who}the file does not name the unit of its accelerations; give units='g', 'm/s2' "
-            "or 'cm/s2'"
+            f"{who}the file does not name the unit of its accelerations{asked}; give units='g', "
+            "'m/s2' or 'cm/s2'"
         )
-    return found or wanted
+    return stated or unit
 
 
 #: As many values may be missing at the end, about a line of a file; more is a broken download.
 MOST_MISSING = 8
 
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
+_NUMBER = re.compile(_NUM)
 #: An exponent of three digits, for which Fortran leaves out the letter: 0.25-101.
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d{3})(?![\d.eEdD])")
 #: A line that was broken inside a number: it ends with the letter, the sign or the point.
@@ -100,37 +110,51 @@ _BROKEN = re.compile(r"(?:\d[eEdD][+-]?|[+-])$")
 #: Removes what a row may be made of.
 _MARKS = str.maketrans("", "", "0123456789+-.eE \t")
 
+# What lines above the values state. A unit of acceleration is a statement whatever the words; one
+# beside a number is a value, as that of the peak. Steps and rates are known by their words; any
+# other number of seconds or Hz that may be one is asked for, where it is not what is used.
+_UNIT = re.compile(
+    rf"(?<![a-z]){_PER_SECOND_SQUARED}|(?<![a-z])gals?(?![a-z])"
+    rf"|(?:(?<=[(\[,:=/])\s*|\b(?:in|of|en|units?)\s+|_|(?<=\d)\s*)g(?:'?s)?"
+    r"(?=\s*(?:[)\],;.:=/*x]|$|\s\())"
+)
+_NUMBER_BEFORE = re.compile(rf"(?<![\w.])({_NUM})\s*[x*×]?\s*$")
+_NUMBER_BEHIND = re.compile(rf"\s*[)\]:=x*×/]+[\s:=]*({_NUM})(?![\d.]*\s*[a-z])")
+#: A part of g that no record has: it is a misprint, or another unit.
+_PART_OF_G = re.compile(r"(?<![\w])(?:%\s?|milli[ -]?|micro[ -]?|[mµμ])g(?:als?)?(?![\w])")
+_UNIT_KEY = re.compile(
+    r"(?:unit(?:s|e|es|a)?|unidad(?:es)?|einheit(?:en)?|birimi?)(?![a-z])"
+    r"\s*(?:[:=(\[]|(?:of|is|are|in)\b)[\s:=(\[]*(.*)"
+)
+#: A unit of something else, as that of the times.
+_OTHER_UNIT = re.compile(rf"({_SECOND}|hz|deg\w*|°)\W*$")
+_RATES = {"hz": 1.0, "khz": 1e3, "sps": 1.0}
+_TIME_UNIT = rf"(?<![a-z])(k?hz|sps|ms(?:ec)?|us|milliseconds?|{_SECOND})(?![a-z0-9^'])"
+_STEP = re.compile(
+    r"(?:\b(?:dt|delta[ _]*t)\b|\btime[ _]*(?:step|interval|increment)"
+    r"|\bsampl\w*?[ _]*(?:interval|period|step)"
+    r"|(?P<rate>\bsampl\w*?[ _]*(?:rate|freq\w*)|\bsamples\s*(?:/|per)\s*s\w*))"
+    rf"(?P<between>[^\d.+-]*?)(?P<number>{_NUM})\s*(?P<behind>[a-z]*)"
+)
+_TIMED = re.compile(
+    rf"(?<![\w.:/-])({_NUM})\s*{_TIME_UNIT}|{_TIME_UNIT}\W{{0,3}}?[:=]\s*({_NUM})"
+    rf"|(?<![\w.:/-])({_NUM})\s*(?![ckm]?m/|in/|ft/)(?:[a-z]+|1)\s*(?:/|p(?:er|or)\s)\s*{_SECOND}(?![a-z/])"
+)
+_FILTER = re.compile(r"filt|pass|cut|corner|corte|pasa|\b[hl]p\b|natural|instrument|nyquist")
+#: A step is at most this long, a rate at least its inverse [s].
+_LONGEST_STEP = 0.1
+#: Steps that differ by this part are two; times this part of a step off are round-off of printing.
+_UNEVEN = 0.02
 
-_VALUE = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)"
 _COUNT = re.compile(
     r"(?:\bNPTS|\bNDATA|\b(?:NUMBER|NO\.?|NUM)[ _]*OF[ _]*(?:DATA|POINTS|SAMPLES|VALUES)\w*)"
     r"\s*[=:]?\s*(\d+)",
     re.IGNORECASE,
 )
-_STEP = re.compile(
-    r"(?:\bDT\b|\bDELTA[ _]*T\b|\bTIME[ _]*(?:STEP|INTERVAL|INCREMENT)"
-    rf"|\bSAMPL\w*?[ _]*(?:INTERVAL|PERIOD|STEP))([^\d.+-]*?){_VALUE}\s*(ms)?",
-    re.IGNORECASE,
-)
-_RATE = re.compile(
-    r"(?:\bSAMPL\w*?[ _]*(?:RATE|FREQ\w*)|\bSAMPLES\s*(?:/|PER)\s*S\w*)[^\d.+-]*?" + _VALUE,
-    re.IGNORECASE,
-)
-#: Numbers before their names, or alone below the unit: 4000 0.0050 NPTS, DT.
+#: Numbers before their names: 4000 0.0050 NPTS, DT.
 _BEFORE = re.compile(
-    rf"^\s*{_VALUE}\s+{_VALUE}\s*(?:(NPTS|DT)\s*,?\s*(?:NPTS|DT)\W*(?:SEC\W*)?)?$", re.IGNORECASE
+    rf"^\s*({_NUM})\s+({_NUM})\s*(NPTS|DT)\s*,?\s*(?:NPTS|DT)\W*(?:SEC\W*)?$", re.IGNORECASE
 )
-_UNIT_KEY = re.compile(
-    r"(?:\b|_)UNITS?(?:\b|_)\s*(?:OF\b|IS\b|ARE\b)?[\s:=(\[]*(.*)", re.IGNORECASE
-)
-_UNIT_TEXT = re.compile(
-    r"(?<![\w/])(?:(?:mm|cm|m|in|ft)\s*[/.*·]?\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|(?:\^|\*\*)?-?2|²)|gals?)"
-    r"(?![\w/])|(?<=[(\[])\s*g\s*(?=[)\]])|(?<=,)\s*g\s*$",
-    re.IGNORECASE,
-)
-#: A unit of something else, as that of the times.
-_OTHER_UNIT = re.compile(r"(s|sec|seconds?|hz|deg\w*|°)\W*$", re.IGNORECASE)
-_QUANTITY = re.compile(r"ACC|PGA", re.IGNORECASE)
 _ABOUT = re.compile(
     r"^\W*((?:STATION|COMP|DIR|STREAM|EVENT)\w*?(?:[ _](?:CODE|NAME))?)\.?\s*[:=]\s*(\S.*)$",
     re.IGNORECASE,
@@ -139,18 +163,8 @@ _KEY_AND_VALUE = re.compile(r"\s*[A-Za-z][^:=]*[:=]")
 _MOST_HEAD = 100
 
 
-def is_record(lines: Sequence[str]) -> bool:
-    """Whether the first lines of a file state the number of values, as those of an AT2 file."""
-    head = lines[:_MOST_HEAD]
-    named = any(_COUNT.search(line) or "NPTS" in line.upper() for line in head)
-    return named or any(
-        _UNIT_KEY.search(line) and (found := _BEFORE.match(below)) and found[1].isdigit()
-        for line, below in itertools.pairwise(head)
-    )
-
-
-def stated_unit(head: Sequence[str], path: str) -> str:
-    """Return the unit of the accelerations that lines above the values state, or an empty text.
+def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, str]]]:
+    """Return the unit of the accelerations that lines above them state, and values with a unit.
 
     Parameters
     ----------
@@ -159,80 +173,135 @@ def stated_unit(head: Sequence[str], path: str) -> str:
     path : str
         Of the file, for messages.
 
+    Returns
+    -------
+    unit : str
+        Empty if no line states one.
+    values : list of (float, str)
+        Values with a unit, as that of the peak [m/s2], and their lines.
+
     Raises
     ------
     InputError
         If a line states a unit that is not known, or two lines state two.
     """
     said: dict[str, str] = {}
+    values: list[tuple[float, str]] = []
     for line in head:
-        key = _UNIT_KEY.search(line)
-        if not key or not key[1].strip(" )]"):
-            continue
-        rest = re.split(r"[,;]", key[1])[0]
-        found = _UNIT_TEXT.search(line)
-        unit = unit_named(rest) or unit_named(rest.split()[0] if rest.split() else "")
-        unit = unit or (unit_named(found[0]) if found else "")
-        if unit:
-            said.setdefault(unit, line.strip())
-        elif not _OTHER_UNIT.match(rest.strip()):
+        text, short = plain(line).strip(), line.strip()[:80]
+        known = False
+        for match in _UNIT.finditer(text):
+            word = re.sub(r"^(?:_|in\s|of\s|en\s|units?\s)?\s*", "", match[0])
+            unit, known = unit_named(word), True
+            beside = _NUMBER_BEFORE.search(text[: match.end() - len(word)])
+            beside = beside or _NUMBER_BEHIND.match(text[match.end() :])
+            if beside:
+                values.append((abs(_float(beside[1])) * UNITS[unit], short))
+            else:
+                said.setdefault(unit, short)
+        key = _UNIT_KEY.search(text)
+        strange = key and re.search("[a-z]", key[1]) and not _OTHER_UNIT.match(key[1])
+        if _PART_OF_G.search(text) or (strange and not known):
             raise InputError(
-                f"{path}: the unit {rest.split()[0] if rest.split() else key[1]!r} of "
-                f"{line.strip()[:80]!r} is not one of {', '.join(UNITS)}; convert the file"
+                f"{path}: the unit of {short!r} is not one of {', '.join(UNITS)}; convert the file"
             )
-    if not said:
-        for line in head:
-            if _QUANTITY.search(line):
-                said |= {unit_named(text[0]): line.strip() for text in _UNIT_TEXT.finditer(line)}
     if len(said) > 1:
         told = " and ".join(f"{unit} ({line[:60]!r})" for unit, line in said.items())
         raise InputError(f"{path}: states the units {told}; keep the one that is meant")
-    return next(iter(said), "")
+    return next(iter(said), ""), values
+
+
+def _check_peak(values: Sequence[tuple[float, str]], motion: GroundMotion, path: str) -> None:
+    """Refuse a unit that the user gave, if a value that the file states with its unit is far off.
+
+    Peaks of other components and of the uncorrected record are within a factor of five.
+    """
+    if values and not any(0.2 * motion.pga <= value <= 5 * motion.pga for value, _ in values):
+        value, line = values[0]
+        raise InputError(
+            f"{path}: the largest acceleration is {motion.pga:.4g} m/s2, and {line!r} states "
+            f"{value:.4g} m/s2; check units, or say checks=False if that is no peak"
+        )
 
 
 def stated_step(head: Sequence[str]) -> float | None:
     """Return the step [s] that lines above the values state, as a step or as a rate, or None."""
     for line in head:
-        before = _BEFORE.match(line)
-        if before and before[3]:
+        before, match = _BEFORE.match(line), _STEP.search(plain(line))
+        if before:
             return _float(before[1 if before[3].upper() == "DT" else 2])
-        step, rate = _STEP.search(line), _RATE.search(line)
-        if step:
-            thousand = step[3] or re.search(r"\bms\b|[_(]ms\b", step[1], re.IGNORECASE)
-            return _float(step[2]) / (1000 if thousand else 1)
-        if rate and _float(rate[1]) > 0:
-            return 1 / _float(rate[1])
+        if match and ((number := _float(match["number"])) > 0 or not match["rate"]):
+            unit = re.search(_TIME_UNIT, match["behind"]) or re.search(
+                _TIME_UNIT, match["between"].replace("_", " ")
+            )
+            many = re.search(rf"(?:/|\bper)\s*{_SECOND}(?![a-z])", match["between"])
+            word = unit[1] if unit and not many else "hz" if match["rate"] else "s"
+            return _seconds(number, word) if number else 0.0
     return None
+
+
+def _seconds(number: float, unit: str) -> float:
+    """Return a number of seconds, or the time between two of a rate."""
+    if unit in _RATES:
+        return 1 / (_RATES[unit] * number)
+    return number * (1e-3 if unit[0] == "m" else 1e-6 if unit == "us" else 1.0)
+
+
+def _check_step(head: Sequence[str], step: float, path: str) -> None:
+    """Refuse a step if a line has a time or a rate that may be the step, and none has this one."""
+    asked: dict[str, float] = {}
+    for line in head:
+        text = plain(line)
+        for match in () if _FILTER.search(text) else _TIMED.finditer(text):
+            number = _float(match[1] or match[4] or match[5])
+            other = _seconds(number, match[2] or match[3] or "hz") if number > 0 else math.inf
+            if abs(other - step) <= _UNEVEN * step:
+                return
+            if other <= _LONGEST_STEP:
+                asked.setdefault(line.strip()[:80], other)
+    for line, other in asked.items():
+        raise InputError(
+            f"{path}: the step is {step:g} s, but {line!r} may state {other:g} s; correct dt or "
+            "the file, or say checks=False if it is no step"
+        )
 
 
 def stated_count(head: Sequence[str]) -> int | None:
     """Return the number of values that lines above them state, or None."""
     for line in head:
-        before = _BEFORE.match(line)
-        if before and before[3]:
+        if before := _BEFORE.match(line):
             word = before[2 if before[3].upper() == "DT" else 1]
             return int(word) if word.isdigit() else None
-        if found := _COUNT.search(line):
-            return int(found[1])
+        if match := _COUNT.search(line):
+            return int(match[1])
     return None
 
 
-def agreed_step(found: float | None, given: float | None, path: str) -> float | None:
+def agreed_step(stated: float | None, wanted: float | None, path: str) -> float | None:
     """Return the step of a file: the one that it states, or the one that the user gives."""
-    if found is None or given is None:
-        return found if given is None else given
-    if abs(found - given) > 1e-6 * found:
+    if stated is None or wanted is None:
+        return stated if wanted is None else wanted
+    if abs(stated - wanted) > 1e-6 * stated:
         raise InputError(
-            f"{path}: the file says that its step is {found:g} s, and dt = {given:g} s was given; "
-            "leave dt out, or correct the file"
+            f"{path}: the file says that its step is {stated:g} s, and dt = {wanted:g} s was "
+            "given; leave dt out, or correct the file"
         )
-    return found
+    return stated
 
 
 def read_record(
-    lines: list[str], path: str, name: str, units: str | None, dt: float | None
+    lines: list[str],
+    path: str,
+    name: str,
+    units: str | None,
+    dt: float | None,
+    *,
+    first: int,
+    count: int | None,
+    step: float | None,
+    checks: bool,
 ) -> GroundMotion:
-    """Return the motion of a file that states the number of its values, line by line.
+    """Return the motion of a file with the values of one record, line by line.
 
     Parameters
     ----------
@@ -246,6 +315,14 @@ def read_record(
         Unit of the accelerations, if the file names none.
     dt : float or None
         Step [s], if the file states none.
+    first : int
+        Lines above the values.
+    count : int or None
+        Number of the values, if the file states it.
+    step : float or None
+        The step that the file states [s].
+    checks : bool
+        False accepts what may contradict a line above the values.
 
     Raises
     ------
@@ -257,13 +334,8 @@ def read_record(
     RepairWarning
         If up to eight values are missing at the end.
     """
-    first = _first_value(lines)
     head = lines[:first]
-    bare = _BEFORE.match(head[-1]) if head else None
-    count, step = stated_count(head), stated_step(head)
-    if bare and not bare[3] and bare[1].isdigit() and count is None:
-        count, step = int(bare[1]), _float(bare[2])
-    step = agreed_step(step, dt, path)
+    stated, step = step, agreed_step(step, dt, path)
     if count is None or step is None:
         missing = [key for key, at in (("NPTS", count), ("DT", step)) if at is None]
         raise InputError(
@@ -275,40 +347,125 @@ def read_record(
             f"{path}: NPTS = {count} must be 2 or more and DT = {step:g} above 0 and at most 1 s; "
             "correct the line above the values"
         )
+    if checks and stated is None:
+        _check_step(head, step, path)
     _refuse_other(head, path)
-    unit = agreed_unit(stated_unit(head, path), units, f"{path}: ")
+    stated_in, peaks = stated_unit(head, path)
+    unit = agreed_unit(stated_in, units, f"{path}: ", peaks[0][1] if peaks else "")
     values = _values(lines, first, path)
-    missing_values = count - len(values)
-    if missing_values > MOST_MISSING:
+    lacking = count - len(values)
+    if lacking > MOST_MISSING:
         raise InputError(
             f"{path}: {len(values)} values, but NPTS = {count}; the file is truncated, download it "
             "again"
         )
-    if missing_values < 0:
+    if lacking < 0:
         raise InputError(
             f"{path}: {len(values)} values, but NPTS = {count}; correct NPTS, or remove what does "
             "not belong to the record"
         )
-    if missing_values:
+    if lacking:
         warn(
-            f"{path}: the last {missing_values} of NPTS = {count} values are missing; the record "
+            f"{path}: the last {lacking} of NPTS = {count} values are missing; the record "
             f"ends at {step * (len(values) - 1):g} s",
             RepairWarning,
         )
     second = lines[1].strip() if first > 1 and not _COUNT.search(lines[1]) else ""
-    return GroundMotion(np.array(values) * UNITS[unit], step, name, _about(head) or second)
+    motion = GroundMotion(np.array(values) * UNITS[unit], step, name, _about(head) or second)
+    if checks and not stated_in:
+        _check_peak(peaks, motion, path)
+    return motion
 
 
 def _first_value(lines: list[str]) -> int:
     """Return the number of lines above the values: up to the last that states something."""
     last = 0
     for number, line in enumerate(lines[:_MOST_HEAD], 1):
-        named = _COUNT.search(line) or _STEP.search(line) or _RATE.search(line)
-        bare = last == number - 1 and (found := _BEFORE.match(line)) and found[1].isdigit()
+        text = plain(line)
         behind = last == number - 1 and _KEY_AND_VALUE.match(line)
-        if named or bare or behind or "NPTS" in line.upper() or _UNIT_KEY.search(line):
+        if _STEP.search(text) or _UNIT_KEY.search(text) or behind or _states_count(line):
             last = number
     return last
+
+
+def _states_count(line: str) -> bool:
+    return bool(_COUNT.search(line)) or "NPTS" in line.upper()
+
+
+def _record(lines: list[str]) -> tuple[int, int | None, float | None] | None:
+    """Return the lines above the values of one record, their number and step, or None for columns.
+
+    The number may be stated in words, or stand above the values, alone or with the step.
+    """
+    if any(map(_states_count, lines[:_MOST_HEAD])):
+        first, count, step = _stated(lines)
+        rows = [line for line in lines[first:] if re.match(r"\s*[-+.\d]", line)]
+        # As many lines as values are rows of columns, and so are pairs that begin with times.
+        if count is not None and (len(rows) == count or _begin_with_times(rows[:_MOST_HEAD])):
+            return None
+        return first, count, step
+    filled = [i for i, line in enumerate(lines) if line.strip() and line.lstrip()[0] != "#"]
+    begin = next((i for i in filled if _words(lines[i])), len(lines))
+    filled = [i for i in filled if i >= begin]
+    return _counted(lines, filled) if len(filled) > 2 else None
+
+
+def _counted(
+    lines: list[str], filled: Sequence[int]
+) -> tuple[int, int | None, float | None] | None:
+    """Return the same of lines without words for the number of the values."""
+    begin = filled[0]
+    words, below = _words(lines[begin]), _words(lines[filled[1]])
+    numbers = [len(_NUMBER.findall(lines[i])) for i in filled]
+    if len(words) <= 2 and words[0].isdigit() and below:
+        count, rest = int(words[0]), sum(numbers[1:])
+        step = _float((words + below)[1])
+        if len(words) == 1 and count == rest:
+            return begin + 1, count, stated_step(lines[:begin])
+        if len(words) == len(below) == 1 and count == rest - 1 and 0 < step <= 1:
+            return filled[1] + 1, count, step
+        if len(words) == 2 != len(below) and 0 <= count - rest <= MOST_MISSING and 0 < step <= 1:
+            return begin + 1, count, step
+    if not _goes_on(lines, filled):
+        return None
+    return begin, sum(numbers), stated_step(lines[:begin])
+
+
+def _stated(lines: list[str]) -> tuple[int, int | None, float | None]:
+    """Return the lines above the values, and the number and the step that they state."""
+    first = _first_value(lines)
+    return first, stated_count(lines[:first]), stated_step(lines[:first])
+
+
+def _words(line: str) -> list[str]:
+    """Return the numbers of a line as they stand there; none if it has anything else."""
+    words = (line.replace(",", " ") if "." in line else line).split()
+    return words if all(map(_NUMBER.fullmatch, words)) else []
+
+
+def _begin_with_times(rows: Sequence[str]) -> bool:
+    """Whether rows are pairs of which nearly all first numbers ascend."""
+    pairs = [_NUMBER.findall(row) for row in rows]
+    times = np.array([_float(pair[0]) for pair in pairs if len(pair) == 2])
+    return len(times) >= 0.8 * len(pairs) and float(np.mean(np.diff(times) > 0)) >= 0.8
+
+
+def _goes_on(lines: Sequence[str], filled: Sequence[int]) -> bool:
+    """Whether three or more values a line without names are one record.
+
+    Values that follow each other in a line then differ less than those below each other.
+    """
+    rows = [_words(lines[i]) for i in filled]
+    width = len(rows[0])
+    named = filled[0] > 0 and len(lines[filled[0] - 1].lstrip("#").split()) == width
+    if width < 3 or named or any(len(row) != width for row in rows[:-1]):
+        return False
+    last = len(rows[-1])
+    values = np.array([[_float(word) for word in row] for row in rows[:-1]])
+    along = np.abs(np.diff(values.ravel())).mean()
+    return 0 < last <= width and bool(
+        along < (0.7 if last == width else 1.0) * np.abs(np.diff(values, axis=0)).mean()
+    )
 
 
 def _about(head: Sequence[str]) -> str:
@@ -332,7 +489,7 @@ def _refuse_other(head: Sequence[str], path: str) -> None:
 
 #: K-NET and KiK-net: lines of 18 letters for the key and a value, then integers.
 _KNET_HEAD = 17
-_SCALE = re.compile(rf"{_VALUE}\s*\(gal\)\s*/\s*{_VALUE}", re.IGNORECASE)
+_SCALE = re.compile(rf"({_NUM})\s*\(gal\)\s*/\s*({_NUM})", re.IGNORECASE)
 
 
 def read_knet(lines: list[str], path: str, name: str) -> GroundMotion:
@@ -412,8 +569,6 @@ def _float(word: str) -> float:
     return float(word.lower().replace("d", "e"))
 
 
-#: Times that are this part of a step away from even steps are round-off of their printing.
-_UNEVEN = 0.02
 _SECONDS = ("", "s", "sec", "second", "seconds")
 
 
@@ -424,6 +579,8 @@ def read_columns(
     units: str | None,
     dt: float | None,
     column: str | int | None,
+    *,
+    checks: bool,
 ) -> GroundMotion:
     """Return the motion of a file with a row of numbers a line.
 
@@ -443,6 +600,8 @@ def read_columns(
         at uneven times are interpolated.
     column : str, int or None
         The accelerations, by the name of their column or by its number from 1.
+    checks : bool
+        False accepts what may contradict a line above the values.
 
     Raises
     ------
@@ -451,52 +610,73 @@ def read_columns(
     """
     # The words of a comment are no names of columns.
     table = read_table((path, ["" if line.startswith("#") else line for line in lines]), least=1)
-    head = lines[: len(table.head)]
-    _refuse_other(head, path)
+    # A line of names belongs to its columns; above a single one it states what any line may.
+    head = lines[: len(table.head) if table.columns > 1 else table.first]
+    _refuse_other(lines[: table.first], path)
     time_at, value_at = _columns(table, column)
-    own = table.units[value_at]
-    unit = unit_named(own)
-    if own and not unit:
+    if checks and table.columns == 1:
+        _check_count(lines[table.first :], table.values.size - 1, path)
+    named = table.units[value_at] if table.columns > 1 else ""
+    unit = unit_named(named)
+    if named and not unit:
         raise InputError(
-            f"{path}: the unit {own!r} of column {table.names[value_at]} is not one of "
+            f"{path}: the unit {named!r} of column {table.names[value_at]} is not one of "
             f"{', '.join(UNITS)}"
         )
-    # The line of names is read; what the others state must not contradict it.
-    above = stated_unit(head, path)
+    above, peaks = ("cm/s2", []) if _AFAD in lines[0] else stated_unit(head, path)
     if unit and above and unit != above:
         raise InputError(
             f"{path}: column {table.names[value_at]} is in {unit}, and a line above says {above}; "
             "correct the file"
         )
-    unit = agreed_unit(unit or above, units, f"{path}: ")
+    stated_in = unit or above
+    unit = agreed_unit(stated_in, units, f"{path}: ", peaks[0][1] if peaks else "")
     values = table.values[:, value_at] * UNITS[unit]
     comment = next((line.lstrip("# ").strip() for line in lines if line.startswith("#")), "")
     about = _about(head) or comment
-    step = stated_step(head)
-    count = stated_count(head)
+    stated, count = stated_step(head), stated_count(head)
     if count is not None and count != len(values):
         raise InputError(
             f"{path}: {len(values)} rows, but {count} are stated; the file is truncated or mixed up"
         )
     if time_at is None:
-        step = agreed_step(step, dt, path)
+        step = agreed_step(stated, dt, path)
         if step is None:
             raise InputError(f"{path}: has no column with the time; give the step in s, dt=")
-        return GroundMotion(values, step, name, about)
-    if len(values) < 2:
-        raise InputError(f"{path}: has {len(values)} rows; a motion has two or more")
-    values, even = _even(table.values[:, time_at], values, dt, path)
-    if step is not None and dt is None and abs(step - even) > _UNEVEN * step:
-        raise InputError(
-            f"{path}: the times have a step of {even:g} s, and a line above says {step:g} s; "
-            "correct the file"
-        )
-    return GroundMotion(values, even, name, about)
+    else:
+        if len(values) < 2:
+            raise InputError(f"{path}: has {len(values)} rows; a motion has two or more")
+        values, step = _even(table.values[:, time_at], values, dt, path)
+        if stated is not None and dt is None and abs(stated - step) > _UNEVEN * stated:
+            raise InputError(
+                f"{path}: the times have a step of {step:g} s, and a line above says {stated:g} s; "
+                "correct the file"
+            )
+    motion = GroundMotion(values, step, name, about)
+    if checks and stated is None and (time_at is None or dt is None):
+        _check_step(head, step, path)
+    if checks and not stated_in:
+        _check_peak(peaks, motion, path)
+    return motion
+
+
+def _check_count(lines: Sequence[str], rest: int, path: str) -> None:
+    """Refuse a first value that may be the number of the others, if it is not."""
+    first, *others = (line.strip() for line in lines[:20] if line.strip())
+    if first.isdigit() and not any(map(str.isdigit, others)):
+        count = int(first)
+        if count >= 10 and abs(count - rest) <= max(MOST_MISSING, 0.05 * rest):
+            raise InputError(
+                f"{path}: the first line, {first}, may be the number of the values, but {rest} "
+                "are below it; the file is cut or mixed up, or say checks=False"
+            )
 
 
 def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, int]:
     """Return the place of the times, None if there are none, and that of the accelerations."""
     path = table.source
+    if table.columns == 1 and column is None:
+        return None, 0
     time, found = table.find("time"), table.find("acceleration")
     # ACCELERATION TIME SERIES is no time.
     time = None if time == found else time
@@ -512,10 +692,10 @@ def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, 
                 "line, state the number of its values and their step above them, as "
                 "NPTS= 4000, DT= .0050 SEC"
             )
-        return (None, 0) if table.columns == 1 else (0, 1)
+        return 0, 1
     else:
-        if found is None and table.columns == (1 if time is None else 2):
-            found = 0 if time is None else 1 - time
+        if found is None and table.columns == 2 and time is not None:
+            found = 1 - time
         if found is None:
             raise InputError(
                 f"{path}: no column is named after the acceleration, or more than one "
@@ -579,6 +759,8 @@ ENDINGS = (
     ".ud",
     *(f".{direction}{place}" for direction in ("ns", "ew", "ud") for place in (1, 2)),
 )
+#: Of these, files of many kinds.
+_TABLES = (".csv", ".txt")
 #: Formats with much in them besides the accelerations, which other programs read well.
 _OTHERS = (
     ".smc", ".v1", ".v2", ".v1c", ".v2c", ".v3", ".v1a", ".v2a", ".cosmos", ".evt", ".mseed",
@@ -618,7 +800,7 @@ def read_motion(
         The accelerations in a file with several components, by the name of their column or by its
         number from 1.
     checks : bool, optional
-        False accepts a record of more than 5 g.
+        False accepts a record of more than 5 g, and what may contradict a line above the values.
 
     Raises
     ------
@@ -644,35 +826,19 @@ def read_motion(
         motion = read_knet(lines, name, stem)
         agreed_unit("cm/s2", units, f"{name}: ")
         agreed_step(motion.dt, dt, name)
-    elif ending == ".at2" or _is_one_record(lines, column):
-        motion = read_record(lines, name, stem, units, dt)
+    elif (record := None if column is not None else _record(lines)) or ending == ".at2":
+        first, count, step = record or _stated(lines)
+        motion = read_record(
+            lines, name, stem, units, dt, first=first, count=count, step=step, checks=checks
+        )
     else:
-        if _AFAD in lines[0]:
-            agreed_unit("cm/s2", units, f"{name}: ")
-            units = "cm/s2"
-        motion = read_columns(lines, name, stem, units, dt, column)
+        motion = read_columns(lines, name, stem, units, dt, column, checks=checks)
     if checks and motion.pga > _LARGEST:
         raise InputError(
             f"{name}: the largest acceleration is {motion.pga / STANDARD_GRAVITY:.4g} g; no ground "
             "has moved with more than 5 g. Check the unit, or say checks=False"
         )
     return motion
-
-
-def _is_one_record(lines: list[str], column: str | int | None) -> bool:
-    """Whether the values of one record stand in the lines, as many as are stated."""
-    if column is not None or not is_record(lines):
-        return False
-    first = _first_value(lines)
-    count = stated_count(lines[:first])
-    # As many lines as values are rows of columns.
-    rows = [line for line in lines[first:] if re.match(r"\s*[-+.\d]", line)]
-    if count is None or len(rows) == count:
-        return count is None
-    pairs = [_NUMBER.findall(row) for row in rows[:_MOST_HEAD]]
-    # Pairs of which nearly all first numbers ascend are times and accelerations.
-    times = np.array([_float(pair[0]) for pair in pairs if len(pair) == 2])
-    return len(times) < 0.8 * len(pairs) or float(np.mean(np.diff(times) > 0)) < 0.8
 
 
 def _refuse_format(path: object, kind: str) -> None:
@@ -696,7 +862,8 @@ def read_motions(
     ----------
     folder : path-like
         Folder with files that end with .AT2, .csv, .txt, .asc, or as those of K-NET; other files
-        are left out.
+        are left out. So are, beside the records of a database, .csv and .txt that cannot be read,
+        as its list and its readme.
     units : str, optional
         As for `read_motion`, for files that do not name their unit.
     pattern : str, optional
@@ -713,7 +880,7 @@ def read_motions(
     Warns
     -----
     RepairWarning
-        As `read_motion`.
+        As `read_motion`, and if a .csv or .txt beside the records of a database is left out.
     """
     place = _arguments.path(folder, "folder")
     _arguments.text(pattern, "pattern")
@@ -728,11 +895,18 @@ def read_motions(
         raise InputError(
             f"{place}: no file {pattern!r} with the ending {', '.join(ENDINGS)} is there"
         )
+    tables = [path for path in paths if path.suffix.lower() in _TABLES]
     motions: list[GroundMotion] = []
     faults: list[str] = []
+    others: list[str] = []
     for path in paths:
-        with _arguments.collected(faults):
+        # Beside the records of a database there are a list of them and a readme.
+        beside = path in tables and len(tables) < len(paths)
+        with _arguments.collected(others if beside else faults):
             motions.append(read_motion(path, units, column=column, checks=checks))
     if faults:
-        raise InputError("\n".join(faults))
+        raise InputError("\n".join(faults + others))
+    if others:
+        told = "; ".join(others)
+        warn(f"{place}: left out beside the records of a database: {told}", RepairWarning)
     return tuple(motions)

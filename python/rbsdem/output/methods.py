@@ -189,7 +189,8 @@ def _settings(study: MethodStudy) -> DataFrame:
     for row in study.rows:
         value = row.setting.value
         if row.setting.method == "auto" and row.reason:
-            value = f"chose {row.reason.split(':')[0]}"
+            method = row.reason.split(":")[0]
+            value = f"chose {NAMES.get(method, method.capitalize())}"
         if row.status not in ("completed", "collapsed"):
             value += f": {row.status}"
         given = " (as given)" if row.setting.own else ""

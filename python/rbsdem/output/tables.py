@@ -28,8 +28,8 @@ PAPER |= {"N/m": (1e-6, "kN/mm"), "Pa": (1e-6, "MPa"), "Nm2": (1e-6, "MN m2")}
 
 #: Letters of a line where standard output is no terminal.
 _WIDE = 200
-#: Widest column of text; what is longer is cut off.
-_WIDEST = 60
+#: Widest column of text; what is longer is cut off. None is cut to less than the second.
+_WIDEST, _NARROWEST = 60, 6
 
 
 def write_parquet(frame: DataFrame, path: str | os.PathLike[str]) -> None:
@@ -75,22 +75,36 @@ def table(
     from rich.table import Table  # noqa: PLC0415
 
     class Printed(Table):
-        """A table that is its own text."""
+        """A table that is its own text. Without room texts are cut, and never numbers."""
+
+        def __rich_console__(self, console: Any, options: Any) -> Any:
+            widths, frame = list(widest), 3 * len(widest)
+            while sum(widths) + frame > options.max_width and widths != least:
+                spare = [a - b for a, b in zip(widths, least, strict=True)]
+                widths[spare.index(max(spare))] -= 1
+            for column, width in zip(self.columns, widths, strict=True):
+                column.width = width
+            room = max(options.max_width, sum(widths) + frame)
+            yield from super().__rich_console__(console, options.update(max_width=room))
 
         def __str__(self) -> str:
             out = console(_WIDE)
             with out.capture() as text:
-                out.print(self)
+                out.print(self, crop=False)
             return text.get().rstrip("\n")
 
         __repr__ = __str__
 
     made = Printed(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
     columns = cells(record)
-    for heading, numbers, _ in columns:
-        width, side = (None, "right") if numbers else (_WIDEST, "left")
-        look: Any = {"justify": side, "no_wrap": True, "overflow": "ellipsis"}
-        made.add_column(heading, max_width=width, **look)
+    widest, least = [], []
+    for heading, numbers, texts in columns:
+        width, figures = (max(map(len, [*words, ""])) for words in (heading.splitlines(), texts))
+        widest.append(max(width, figures) if numbers else min(max(width, figures), _WIDEST))
+        shortest = max(map(len, heading.split()), default=0)
+        least.append(max(shortest, figures) if numbers else min(widest[-1], _NARROWEST))
+        look: Any = {"justify": "right"} if numbers else {"no_wrap": True, "overflow": "ellipsis"}
+        made.add_column(heading, **look)
     for at, row in enumerate(zip(*(texts for _, _, texts in columns), strict=True)):
         made.add_row(*map(plain, row), style=styles[at] if styles else None)
     return made

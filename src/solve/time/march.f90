@@ -237,17 +237,19 @@ contains
    subroutine report_snaps(state, summary)
       type(state_type), intent(in) :: state
       type(summary_type), intent(inout) :: summary
+      character(len=:), allocatable :: before
 
       summary%snaps = state%snaps
       summary%snap_member = state%motion%structure%location(state%snap_spring)%member
       summary%snap_time = state%snap_time
-      associate (before => summary%remark, structure => state%motion%structure)
-         if (before /= '') before = '; '//before
+      before = trim(summary%remark)
+      if (before /= '') before = '; '//before
+      associate (structure => state%motion%structure)
          summary%remark = 'members snapped from one equilibrium to another in '//to_text(state%snaps)// &
                           ' step(s), which lost '//to_text(state%in_snaps)//' J; the most, '// &
                           to_text(state%largest_snap)//' J, was lost at time '//to_text(state%snap_time)// &
                           ' s, where '//trim(spring_name(structure%location(state%snap_spring)))// &
-                          ' moved farthest'//trim(before)
+                          ' moved farthest'//before
       end associate
    end subroutine report_snaps
 
