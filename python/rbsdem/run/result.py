@@ -535,7 +535,8 @@ def pushover(
     FrameResult or Result
         With a row for each point and each event; `events` are the limit states in their order. A
         path that ends before is a result too: its `summary` has "ended" as status, and why as
-        reason. `cyclic`, whose path is prescribed, raises `SolveError` there.
+        reason. `cyclic`, whose path is prescribed, raises `SolveError` there. Where second-order
+        moments have used up the strength, the path has ended: beyond, the structure falls.
     """
     given = {"drift": drift, "displacement": displacement, "force": force}
     said = [name for name, value in given.items() if value is not None]
@@ -554,12 +555,42 @@ def pushover(
     name = "force" if said[0] == "force" else "displacement"
     way: dict[str, Any] = {name: far * np.arange(1, points + 1) / points}
     try:
-        return cyclic(structure, **way, initial=initial, corners=True)
+        result, reason = cyclic(structure, **way, initial=initial, corners=True), ""
     except SolveError as error:
         if error.result is None or len(error.result.displacement) == 0:
             raise
-        error.result.summary.update(status="ended", reason=str(error))
-        return error.result
+        result, reason = error.result, str(error)
+    if name == "displacement":
+        end = _strength_ends(result.displacement, result.force, math.copysign(1.0, far))
+        if end is not None:
+            # Never on to the other side, where the lateral load would hold the structure back.
+            way = {name: np.append(way[name][np.abs(way[name]) < abs(end)], end)}
+            result = cyclic(structure, **way, initial=initial, corners=True)
+            reason = (
+                f"the strength is used up at a displacement of {end:.6g} m, a drift of "
+                f"{100 * end / structure.height:.3g} %: beyond, the structure falls under its own "
+                "weight"
+            )
+    if reason:
+        result.summary.update(status="ended", reason=reason)
+    return result
+
+
+def _strength_ends(displacement: Array, force: Array, side: float) -> float | None:
+    """Return where the force of a path to one side has fallen to zero, if it does so.
+
+    It is straight from row to row. Where it snaps back to the other side, that is where it does.
+    """
+    u, f = side * displacement, side * force
+    onward = (u[1:] > u[:-1]) & (u[1:] > 0)
+    falls = np.flatnonzero(onward & (f[1:] < 0) & (np.maximum.accumulate(f)[:-1] > 0))
+    falls = falls[f[falls + 1] < f[falls]]
+    if falls.size == 0:
+        return None
+    i = falls[0]
+    if f[i] <= 0:
+        return float(side * u[: i + 1].max())
+    return float(side * (u[i] + (u[i + 1] - u[i]) * f[i] / (f[i] - f[i + 1])))
 
 
 def _refined_error(result: Rows) -> Errors:
