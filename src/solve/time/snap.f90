@@ -32,7 +32,9 @@ contains
       call snap(self, state)
       if (.not. self%converged) return
       call find_loss(self, state, loss, energy)
-      if (abs(loss) > no_loss*energy) call count_snap(self, state, loss)
+      ! A jump sets energy free. Where the next state of rest has more, the step is cut.
+      self%converged = loss >= -no_loss*energy
+      if (loss > no_loss*energy) call count_snap(self, state, loss)
    end subroutine snap_unless_smooth
 
    !> The step where the inside of a member, or nodes without mass, snap from one equilibrium to another.
