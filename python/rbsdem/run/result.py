@@ -586,7 +586,8 @@ def _strength_ends(displacement: Array, force: Array, side: float) -> float | No
     falls = np.flatnonzero(onward & (f[1:] < 0) & (np.maximum.accumulate(f)[:-1] > 0))
     falls = falls[f[falls + 1] < f[falls]]
     if falls.size == 0:
-        return None
+        # It may have ended on its way back on the other side.
+        return float(side * u.max()) if f[-1] < 0 < f.max() and u[-1] < u.max() else None
     i = falls[0]
     if f[i] <= 0:
         return float(side * u[: i + 1].max())

@@ -25,8 +25,8 @@ module rbs_solve_static_corner
    !> Efforts of the search for a way forward.
    integer, parameter :: if_stable = 1, by_blocks = 2, to_the_end = 3
 
-   !> Share by which rates differ that are not equal.
-   real(wp), parameter :: same_rate = 1.0e-9_wp
+   !> Share by which rates differ that are not equal, and share of the rate before that is round-off.
+   real(wp), parameter :: same_rate = 1.0e-9_wp, round_off = 1.0e-11_wp
 
 contains
 
@@ -232,7 +232,7 @@ contains
       end do
       path%passes = .true.
       do pivots = 1, 100 + 4*m
-         call path%solve_line(1, found)
+         call find_rates(1)
          if (.not. found) exit
          sense = merge(1, -1, sum(heading(:count)*path%rate(changed(:count))*gap(changed(:count))* &
                                   path%structure%initial_stiffness(changed(:count))) > 0.0_wp)
@@ -253,12 +253,20 @@ contains
          do i = 1, m
             if (line(i) == back) call leave(path%springs, i, -ahead(i))
          end do
-         call path%solve_line(sense, found)
+         call find_rates(sense)
          path%direction = sense
       end if
       path%passes = .false.
 
    contains
+
+      !> Rates; those that are round-off of what they were send no spring either way.
+      subroutine find_rates(direction)
+         integer, intent(in) :: direction
+
+         call path%solve_line(direction, found)
+         if (found) where (abs(path%rate(:m)) < round_off*gap) path%rate(:m) = 0.0_wp
+      end subroutine find_rates
 
       !> Springs that have come to closed ends leave their lines.
       subroutine go_ahead()
