@@ -640,6 +640,17 @@ def test_cut_and_restart_in_time(rng: Rng) -> float:
     return apart(rest, rows_of(whole, slice(at, None)))
 
 
+@relation(80, judged=0.02, bar=1e-3)
+def test_snaps_set_energy_free(rng: Rng) -> float:
+    """What snaps inside members put in, over the input, without damping."""
+    made, time, load = shaken(rng, str(rng.choice(["capped", "mixed", "all"])))
+    made = replace(made, damping=None)
+    run = move(made, time, **load | {"method": "newmark"})
+    if not run.summary.get("snaps"):
+        raise Discard
+    return float(-run.summary["snap_energy"] / run.summary["input_energy"])
+
+
 @relation(30, judged=0.8, bar=1e-7)
 def test_round_off_of_a_motion(rng: Rng) -> float:
     """A motion that is larger by 1e-15 has the same answer, if no force falls.

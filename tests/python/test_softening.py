@@ -80,6 +80,39 @@ def test_capacity_under_a_driven_force(kinematics):
     assert caught.value.result.force[-1] == pytest.approx(240e3 / LENGTH, rel=1e-3)
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_push_over_ends_where_its_strength_is_used_up(side):
+    """A plastic hinge under an axial load: F L = M_y - P u, which is nothing at u = M_y/P."""
+    load = 2e6
+    hinge = Bilinear(k=40e6, d_y=0.003, k_post=0.0)
+    chain = rbsdem.Column(
+        LENGTH, 600.0, Elastic(1e8), hinge, n=1, axial_load=load, kinematics="pdelta"
+    )
+    push = rbsdem.pushover(chain, displacement=2 * side * 120e3 / load, points=7)
+    assert push.summary["status"] == "ended"
+    assert "falls under its own weight" in push.summary["reason"]
+    assert push.displacement[-1] == pytest.approx(side * 120e3 / load, rel=1e-9)
+    assert (side * push.force).min() > -1e-9 * np.abs(push.force).max()
+    assert push.path.displacement[-1] == push.displacement[-1]
+    # A test can be held on the other side: a prescribed path goes there.
+    held = rbsdem.cyclic(chain, displacement=[2 * side * 120e3 / load])
+    assert side * held.force[-1] == pytest.approx(-120e3 / LENGTH, rel=0.02)  # with the slip
+
+
+def test_equal_springs_that_soften_go_on_together():
+    """Of two equal storeys both soften, the way of greatest force; a weaker one softens alone."""
+    capped = PeakOriented(0.005, 100e3, 0.02, 110e3, 0.05, 10e3)
+    weaker = PeakOriented(0.005, 99e3, 0.02, 109e3, 0.05, 10e3)
+    for springs, shares in (([capped, capped], 0.5), ([capped, weaker], 1.0)):
+        chain = rbsdem.Column(LENGTH, 600.0, springs, Elastic(1e12), n=2, kinematics="small")
+        run = rbsdem.cyclic(chain, displacement=[0.039, 0.06])
+        slip = np.diff(run.slip, axis=0)[0]
+        assert run.force[1] < run.force[0] * 1.1
+        assert slip.max() >= shares * slip.sum() * (1 - 1e-6)
+        if shares == 0.5:
+            np.testing.assert_allclose(slip[0], slip[1], rtol=1e-9)
+
+
 #: Shear spring that gives back more than the hinge loses: u = V/k + L turn goes back while V falls.
 SOFT = Elastic(0.9 * -SOFTENING / LENGTH**2)
 
