@@ -302,12 +302,17 @@ contains
       end if
    end function height
 
-   !> Whether it is a frame whose members Python makes of drawings.
+   !> Whether it is a frame whose members Python makes of drawings, or whose loads it makes.
    pure logical function is_drawn_frame(self)
       class(case_record), intent(in) :: self
 
-      is_drawn_frame = allocated(self%frame)
-      if (is_drawn_frame) is_drawn_frame = allocated(self%drawing) .or. size(self%frame%infill_of) > 0
+      is_drawn_frame = .false.
+      if (.not. allocated(self%frame)) return
+      associate (frame => self%frame)
+         is_drawn_frame = allocated(self%drawing) .or. size(frame%infill_of) > 0 &
+                          .or. size(frame%node_load) > 0 .or. frame%self_weight &
+                          .or. frame%mass /= 'of_floors' .or. any(abs(frame%floor%live_load) > 0.0_wp)
+      end associate
    end function is_drawn_frame
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.

@@ -1406,7 +1406,7 @@ def unlike(**kind) -> dict[str, object]:
     ("more", "told"),
     [
         ({"floor_mass": 80.0}, "floor: mass = 80 kg is that of no floor .* 40 t is 40e3"),
-        ({"beam_load": 25.0}, "floor: load = 25 N/m is that of no floor .* 10 kN/m is 10e3"),
+        ({"beam_load": 25.0}, "floor: dead_load = 25 N/m is that of no floor .* 10 kN/m is 10e3"),
         ({"storeys": [3200.0] * 3}, "storeys has lengths of 3200 .* 3200 mm is 3.2"),
         (unlike(modulus=30e3), "modulus = 30000 Pa is that of no building material"),
         (unlike(area=1.6e5, inertia=2e9), "radius of gyration of 111.803 m"),

@@ -93,7 +93,7 @@ DRAWN = rbsdem.section.column(SECTION, 1.6, axial_load=744e3).to_namelist() + LO
 
 FRAMED = """\
 &frame storeys = 3.2, 3.2, bays = 6.0, 5.0, kinematics = 'pdelta' /
-&floor mass = 4e4, load = 2e4 /
+&floor mass = 4e4, dead_load = 2e4 /
 &member_kind name = 'C', modulus = 3e10, area = 0.16, inertia = 2e-3, yield_moment = 2.5e5 /
 &member_kind name = 'B', modulus = 3e10, area = 0.15, inertia = 2e-3, interior = 'rigid' /
 &flexure kind = 'B', position = 0, 0.5, 1, rule = 'bilinear', k = 6e7, d_y = 4e-3, k_post = 1e5 /

@@ -98,7 +98,7 @@ def test_case_in_other_units_is_the_case_in_si(tmp_path, system):
 
 FRAME = """
 &frame storeys = 3.2, 3.0, bays = 6.0, kinematics = 'pdelta' /
-&floor mass = 80e3, load = 25e3 /
+&floor mass = 80e3, dead_load = 25e3 /
 &member_kind name = 'all', modulus = 30e9, area = 0.16, inertia = 2.1e-3, shear_rigidity = 1e9 /
 &flexure kind = 'all', rule = 'bilinear', k = 4e7, d_y = 6e-3, k_post = 4e5 /
 &column_of kind = 'all', rigid_end = 0.25 /

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 _PLACES = ("shear", "flexure", "axial_spring")
+#: Words for lines and bays.
+_SIDES = ("outer", "inner")
 _SUPPORTS = ("free", "roller", "pinned", "fixed")
 
 #: Scope of the results of a frame, printed with them.
@@ -495,8 +497,8 @@ class Frame:
         bays there is one line of columns.
     columns, beams : FrameMember or mapping, optional
         Kinds of the columns and beams of the grid: one for all, or a mapping from (line, storey) or
-        (bay, storey) to a kind, where 0 means all and the last pair that fits counts. None: there
-        is no member.
+        (bay, storey) to a kind, where the last pair that fits counts: numbers, tuples of them, 0
+        for all, and for lines and bays "outer" or "inner". None: there is no member.
     floor_mass : float or sequence of float, optional
         Mass of each floor, shared by its nodes as the widths beside them [kg]. Its weight acts as
         far as it is given as a load.
@@ -589,7 +591,9 @@ class Frame:
             # Floors that are alike are stated once, as a case file has them.
             put(name, tuple(given.tolist() if np.ptp(given) else given[:1].tolist()))
         for name in ("columns", "beams"):
-            cells = cells_of(getattr(self, name), name, _is_member, "a FrameMember")
+            lines = len(self.bays or ()) + (name == "columns")  # type: ignore[arg-type]
+            given = getattr(self, name)
+            cells = cells_of(given, name, _is_member, "a FrameMember", lines)
             put(name, cells or None)
         for name, kind in (("nodes", FrameNode), ("members", Member)):
             items = tuple(_arguments.several(getattr(self, name), f"frame: {name}", name))
@@ -858,16 +862,19 @@ class Frame:
         self,
         cells: Sequence[Mapping[tuple[int, int], Any]] = (),
         drawn: Mapping[Any, dict[str, Any]] | None = None,
+        building: Any = None,
         **more: Any,
     ) -> _core.Statement:
         """Return the groups of a case file; some cells may be drawn, with `more` keys of the grid.
 
-        Of a drawn cell `drawn` has the keys that name its drawings.
+        Of a drawn cell `drawn` has the keys that name its drawings; the floors, nodes and members
+        of a building stand in the place of those that were made of them.
         """
         grids: Any = cells or (self.columns or {}, self.beams or {})
         drawn = drawn or {}
         kinds = [one for own in grids for one in own.values() if one and one not in drawn]
-        kinds += [member.kind for member in self.members]
+        members = self.members if building is None else building.members
+        kinds += [member.kind for member in members]
         names = _names_of(kinds)
         usual = {"kinematics": "small", "base": "fixed", "pattern": "triangular", "control": "x"}
         usual["collapse"] = "storey"
@@ -877,7 +884,7 @@ class Frame:
         }
         own_values = {k: v for k, v in grid.items() if v not in (None, False, "", usual.get(k))}
         parts = [_core.group("frame", own_values | more)]
-        parts += self._floors()
+        parts += self._floors() if building is None else building.floors()
         layers: dict[Spring, int] = {}
         for (_, kind), name in names.items():
             parts += kind._groups(name, layers)
@@ -895,9 +902,9 @@ class Frame:
             for (line, storey), cell in own_cells.items():
                 where = {at: line or None, "storey": storey or None}
                 parts.append(_core.group(group, where | keys_of(cell)))
-        for node in self.nodes:
+        for node in self.nodes if building is None else building.nodes:
             parts += node._groups()
-        parts += [member._group(names[_stated(member.kind)]) for member in self.members]
+        parts += [member._group(names[_stated(member.kind)]) for member in members]
         parts += self._lost()
         if self.panel is not None:
             parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
@@ -919,8 +926,8 @@ class Frame:
             mass = masses[min(i, len(masses) - 1)]  # type: ignore[arg-type, index]
             load = loads[min(i, len(loads) - 1)]  # type: ignore[arg-type, index]
             if mass or load:
-                storey = None if count == 1 else i + 1
-                values = {"storey": storey, "mass": mass or None, "load": load or None}
+                floor = None if count == 1 else i + 1
+                values = {"floor": floor, "mass": mass or None, "dead_load": load or None}
                 yield _core.group("floor", values)
 
 
@@ -933,25 +940,54 @@ def _is_member(cell: object) -> bool:
     return isinstance(cell, FrameMember)
 
 
+def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
+    """Return the places of a grid that a pair names: line or bay, and storey or floor, 0 for all.
+
+    Parameters
+    ----------
+    pair : tuple
+        Numbers or tuples of numbers; the first may be "outer" or "inner".
+    name : str
+        Of the argument, for messages.
+    lines : int
+        Number of lines or bays.
+    """
+    if not (isinstance(pair, tuple) and len(pair) == 2):
+        raise InputError(
+            f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
+        )
+    numbers = []
+    for given, words in zip(pair, (_SIDES, ()), strict=True):
+        if isinstance(given, str):
+            if given not in words:
+                raise InputError(
+                    f"frame: {name}: {given!r} is not known; a pair has numbers, 0 for all, tuples "
+                    'of numbers, and for lines and bays "outer" or "inner"'
+                )
+            outer = list(dict.fromkeys((1, lines)))
+            numbers.append(outer if given == "outer" else list(range(2, lines)))
+        else:
+            several = given if isinstance(given, (tuple, range)) else (given,)
+            numbers.append([_arguments.integer(one, f"frame: {name}") for one in several])
+    return [(at, storey) for storey in numbers[1] for at in numbers[0]]
+
+
 def cells_of(
-    given: Any, name: str, is_cell: Callable[[Any], bool], kinds: str
+    given: Any, name: str, is_cell: Callable[[Any], bool], kinds: str, lines: int
 ) -> dict[tuple[int, int], Any]:
     """Return the cells of a grid by pairs of line or bay and storey, 0 for all, in their order."""
     items = given.items() if isinstance(given, Mapping) else [((0, 0), given)]
     found: dict[tuple[int, int], Any] = {}
     for pair, one in () if given is None else items:
-        if not (isinstance(pair, tuple) and len(pair) == 2):
-            raise InputError(
-                f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
-            )
+        places = places_of(pair, name, lines)
         if one is not None and not is_cell(one):
             raise InputError(
                 f"frame: {name} = {_arguments.shown(one)} must be {kinds}, or a mapping from pairs "
                 "(line or bay, storey), 0 for all, to these"
             )
-        at, storey = (_arguments.integer(number, f"frame: {name}") for number in pair)
-        found.pop((at, storey), None)
-        found[at, storey] = one
+        for place in places:
+            found.pop(place, None)
+            found[place] = one
     return found
 
 

@@ -9,12 +9,12 @@ from typing import Any
 from rbsdem import _core
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import SPRING_GROUPS, Column, Damping
-from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
+from rbsdem.model.frame import FrameMember, FrameNode, Member, places_of, with_rigid_end
 from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
-from rbsdem.section.building import Building, Frame
+from rbsdem.section.building import Frame
 from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
@@ -32,6 +32,9 @@ SHAPES: dict[str, type[Section]] = {
     "wall": WallSection,
 }
 
+#: Keys of a frame that is drawn, and of its floors.
+_DRAWN = ("ends", "panel_hoops", "live_share", "self_weight", "mass")
+_OF_FLOORS = ("dead_load", "live_load", "mass")
 #: Keys of the location of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")
 #: Classes of the groups that refer to steels.
@@ -252,30 +255,39 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
         given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])
     }
     frame = _core.typed("frame", groups["frame"][-1])
-    storeys = max(len(frame.get("storeys", ())), 1)
+    bays, storeys = len(frame.get("bays", ())), max(len(frame.get("storeys", ())), 1)
     damping = groups.get("damping")
     panels = [own for own in groups.get("flexure", []) if "panel" in own]
-    ends, hoops = frame.pop("ends", "asce"), frame.pop("panel_hoops", None)
+    drawn = {name: frame.pop(name) for name in _DRAWN if name in frame}
     made = frame | {
-        "floor_mass": _by_floor("mass", storeys, groups),
-        "beam_load": _by_floor("load", storeys, groups),
-        "nodes": _nodes(groups, len(frame.get("bays", ())) + 1),
+        "nodes": _nodes(groups, bays + 1),
         "members": [_member(given, kinds[given["kind"]]) for given in groups.get("member", [])],
         "damping": Damping(**_core.typed("damping", damping[-1])) if damping else None,
         "panel": next((_spring(own) for own in panels if own["panel"] == "all"), None),
         "losses": {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
     }
     kinds |= {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
-    cells = [_cells(*names, groups, kinds) for names in (("column_of", "line"), ("beam_of", "bay"))]
+    columns: Any = _cells("column_of", "line", bays + 1, groups, kinds) or None
+    beams = _cells("beam_of", "bay", bays, groups, kinds) or None
     infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
-    infilled = _cells("infill_of", "bay", groups, infills)
-    if not drawings and not infilled:
-        return Frame(columns=cells[0] or None, beams=cells[1] or None, **made)
-    storeys, bays = made.pop("storeys", ()), made.pop("bays", ())
-    building = Building(
-        cells[0], cells[1], ends, getattr(kinds.get(hoops), "ties", hoops), infilled
-    )
-    return Frame.of_drawings(tuple(storeys), tuple(bays), building, made)
+    infilled = _cells("infill_of", "bay", bays, groups, infills)
+    dead, live, mass = (_by_floor(name, storeys, groups) for name in _OF_FLOORS)
+    weights = {
+        place: given["load"]
+        for given in groups.get("node_load", [])
+        for place in places_of(_pair(given, "line", "floor"), "node_load", bays + 1)
+    }
+    if not (drawings or drawn or weights or infilled or any(live)):
+        return Frame(columns=columns, beams=beams, floor_mass=mass, beam_load=dead, **made)
+    if "panel_hoops" in drawn:
+        hoops = kinds.get(drawn["panel_hoops"])
+        drawn["panel_hoops"] = getattr(hoops, "ties", drawn["panel_hoops"])
+    if any(mass):
+        made["floor_mass"] = mass
+    return Frame.grid(
+        made.pop("storeys", ()), made.pop("bays", None), columns=columns, beams=beams,
+        dead_load=dead, live_load=live, node_load=weights, infills=infilled, **drawn, **made,
+    )  # fmt: skip
 
 
 def _drawn_section(groups: Groups) -> Section:
@@ -330,27 +342,31 @@ def _layered(given: dict[str, Any], groups: Groups) -> Layered:
     return Layered(_layers(layers, _layer_springs(groups)))
 
 
+def _pair(given: Mapping[str, Any], line: str, storey: str) -> tuple[Any, int]:
+    """Return the place that a group of a grid names, as `Frame.grid` takes it."""
+    word = given.get(f"{line}s", "all")
+    return int(given.get(line, 0)) if word == "all" else word, int(given.get(storey, 0))
+
+
 def _cells(
-    group: str, key: str, groups: Groups, kinds: Mapping[str, Any]
+    group: str, key: str, lines: int, groups: Groups, kinds: Mapping[str, Any]
 ) -> dict[tuple[int, int], Any]:
     """Return kinds, or sections of drawings, by their places."""
     found: dict[tuple[int, int], Any] = {}
     for given in groups.get(group, []):
-        pair = (int(given.get(key, 0)), int(given.get("storey", 0)))
-        # The last that fits counts.
-        found.pop(pair, None)
-        kind = None if given["kind"] == "none" else kinds[given["kind"]]
-        if isinstance(kind, Section):
+        cell = None if given["kind"] == "none" else kinds[given["kind"]]
+        if isinstance(cell, Section):
             other = given.get("kind_to")
-            found[pair] = kind if other is None else (kind, kinds[other])
-            continue
-        if isinstance(kind, Infill):
-            found[pair] = kind
-            continue
-        rigid_end = given.get("rigid_end", 0.0)
-        if "rigid_from" in given or "rigid_to" in given:
-            rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
-        found[pair] = None if kind is None else with_rigid_end(kind, rigid_end)
+            cell = cell if other is None else (cell, kinds[other])
+        elif isinstance(cell, FrameMember):
+            rigid_end = given.get("rigid_end", 0.0)
+            if "rigid_from" in given or "rigid_to" in given:
+                rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
+            cell = with_rigid_end(cell, rigid_end)
+        for place in places_of(_pair(given, key, "storey"), group, lines):
+            # The last that fits counts.
+            found.pop(place, None)
+            found[place] = cell
     return found
 
 
@@ -358,7 +374,7 @@ def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:
     values = [0.0] * storeys
     for given in groups.get("floor", []):
         for i in range(storeys):
-            if given.get("storey", 0) in (0, i + 1):
+            if given.get("floor", 0) in (0, i + 1):
                 values[i] = given.get(name, 0.0)
     return values[:1] if len(set(values)) == 1 else values
 

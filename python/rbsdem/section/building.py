@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import count
 from typing import Any, Literal
@@ -15,8 +15,8 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError, warn
 from rbsdem.model import frame as model
-from rbsdem.model.column import NOTES_ON, notes_off
-from rbsdem.model.frame import FrameMember, FrameNode
+from rbsdem.model.column import NOTES_ON
+from rbsdem.model.frame import FrameMember, FrameNode, Member
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
 from rbsdem.section.columns import member, plastic_moments
@@ -43,7 +43,7 @@ _MORE_BELOW = 1.25
 
 @dataclass(frozen=True)
 class Building:
-    """The drawings of the members of a frame.
+    """What a frame was drawn from: sections, loads, and the rules of its nodes.
 
     Attributes
     ----------
@@ -55,6 +55,22 @@ class Building:
         Hoops in the panels of nodes; None: the nodes are rigid.
     infills : dict
         Infill, or None, by (bay, storey), 0 for all.
+    dead_load, live_load : tuple of float
+        On the beams of each floor [N/m].
+    live_share : float
+        Part of the live load that acts.
+    node_load : dict
+        Weights on nodes by (line, floor), 0 for all [N].
+    self_weight : bool
+        Whether the members have their own weight.
+    mass : "from_loads" or None
+        Where the masses of the floors come from.
+    floor_mass : array_like or None
+        Those that were given [kg].
+    nodes, members : tuple of FrameNode and of Member
+        What was given in addition.
+    made : Statement or None
+        The frame that was made of it; one that has been changed since is another.
     """
 
     columns: dict[tuple[int, int], Any]
@@ -62,6 +78,37 @@ class Building:
     ends: float | Literal["asce"] = "asce"
     panel_hoops: Ties | Literal["none"] | None = None
     infills: dict[tuple[int, int], Any] = field(default_factory=dict)
+    dead_load: tuple[float, ...] = (0.0,)
+    live_load: tuple[float, ...] = (0.0,)
+    live_share: float = 0.3
+    node_load: dict[tuple[int, int], float] = field(default_factory=dict)
+    self_weight: bool = False
+    mass: Literal["from_loads"] | None = None
+    floor_mass: Any = None
+    nodes: tuple[FrameNode, ...] = ()
+    members: tuple[Member, ...] = ()
+    made: _core.Statement | None = field(default=None, repr=False)
+
+    def floors(self) -> Iterator[_core.Statement]:
+        """Yield the groups of floors and of loads of nodes."""
+        masses = () if self.floor_mass is None else np.atleast_1d(self.floor_mass).tolist()
+        columns = {"mass": masses, "dead_load": self.dead_load, "live_load": self.live_load}
+        # Floors that are alike are stated once.
+        columns = {
+            name: values[:1] if len(set(values)) == 1 else values
+            for name, values in columns.items()
+        }
+        count = max(len(values) for values in columns.values())
+        for i in range(count):
+            of_floor = {
+                name: values[min(i, len(values) - 1)] or None if values else None
+                for name, values in columns.items()
+            }
+            if any(of_floor.values()):
+                yield _core.group("floor", {"floor": i + 1 if count > 1 else None, **of_floor})
+        for (line, floor), load in self.node_load.items():
+            place = {"line": line or None, "floor": floor or None}
+            yield _core.group("node_load", place | {"load": load})
 
 
 @dataclass(frozen=True, repr=False)
@@ -100,9 +147,10 @@ class Frame(model.Frame):
         storeys, bays : sequence of float
             Heights and widths between axes [m].
         columns, beams : Section, pair of Section, FrameMember, or mapping
-            One for all, or by (line, storey) or (bay, storey), 0 for all, where the last that fits
-            counts; None: there is no member. A pair are the sections of the two halves. y > 0 of
-            a section is up in a beam, on the left in a column.
+            One for all, or by (line, storey) or (bay, storey), where the last that fits counts:
+            numbers, tuples of them, 0 for all, "outer" or "inner": ``{("outer", 1): c1, ("inner",
+            (1, 2)): c2}``. None: there is no member. A pair are the sections of the two halves.
+            y > 0 of a section is up in a beam, on the left in a column.
         ends : float or "asce", optional
             Part of a node that is rigid in columns and beams, or the rule of ASCE 41-17, 10.4.2.2.1
             (`rbsdem.section.rigid_ends`); by default that rule, and 1 with springs in the nodes.
@@ -115,7 +163,7 @@ class Frame(model.Frame):
             Part of the live load that acts.
         node_load : float or mapping, optional
             Weights of walls and facades on the nodes of floors: of the outer lines, or by (line,
-            floor), 0 for all; the last that fits counts [N].
+            floor) as the columns; the last that fits counts [N].
         self_weight : bool, optional
             Whether members of sections have their own weight, 25 kN/m3.
         mass : "from_loads", optional
@@ -138,72 +186,52 @@ class Frame(model.Frame):
             widths = tuple(_arguments.vector(bays, "frame: bays", shape="1 or m").tolist())
         if mass is not None:
             _arguments.choice(mass, "frame: mass", ("from_loads",))
-        cells = [_cells(given, name) for given, name in ((columns, "columns"), (beams, "beams"))]
-        grid = _Grid(heights, widths, *cells)
         lines = len(widths) + 1
+        grid = _Grid(
+            heights, widths, _cells(columns, "columns", lines), _cells(beams, "beams", lines - 1)
+        )
+        given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
+        for node in given:
+            _arguments.instance(node, "frame: nodes", FrameNode)
+        dead = np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load"))
+        dead = dead + grid.floors(dead_load, "dead_load")
         building = Building(
-            cells[0],
-            cells[1],
+            grid.given[0],
+            grid.given[1],
             ends if ends is not None else "asce" if panel_hoops is None else 1.0,
             panel_hoops,
-            model.cells_of(infills, "infills", lambda one: isinstance(one, Infill), "an Infill"),
+            model.cells_of(
+                infills, "infills", lambda one: isinstance(one, Infill), "an Infill", lines - 1
+            ),
+            tuple(dead.tolist()),
+            grid.floors(live_load, "live_load"),
+            _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0),
+            _node_loads(node_load, lines),
+            _arguments.boolean(self_weight, "frame: self_weight"),
+            mass,
+            more.pop("floor_mass", None),
+            given,
+            tuple(more.get("members", ())),
         )
-        nodes = {node.name: node for node in more.pop("nodes", ())}
-        loads = np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load"))
-        loads = loads + grid.floors(dead_load, "dead_load")
-        share = _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0)
-        loads = loads + share * np.array(grid.floors(live_load, "live_load"))
-        heavy = _arguments.boolean(self_weight, "frame: self_weight")
-        if heavy:
-            loads = loads + grid.weights_of_beams()
-        weights = grid.weights(_node_loads(node_load, lines), heavy)
-        for name, weight in weights.items():
-            node = nodes.get(name, FrameNode(name))
-            nodes[name] = replace(node, load_y=node.load_y - weight)
-        more["beam_load"] = loads if len(set(loads.tolist())) > 1 else loads[:1]
-        floors = loads * sum(widths) / STANDARD_GRAVITY
-        for name, node in nodes.items():
-            level = int(name.rsplit("-", 1)[1]) if name.startswith("N-") else 0
-            if level > 0:
-                floors[level - 1] -= node.load_y / STANDARD_GRAVITY
-        _masses(more, floors, mass)
-        more["nodes"] = tuple(nodes.values())
+        grid.check_places("node_load", building.node_load, lines)
+        more |= grid.loads(building)
         drawn = any(building.infills.values()) or any(map(_is_drawn, grid.all_cells()))
         if not drawn:
-            return cls(heights, widths or None, cells[0], cells[1] or None, **more)
-        return cls.of_drawings(heights, widths, building, more)
-
-    @classmethod
-    def of_drawings(
-        cls,
-        storeys: tuple[float, ...],
-        bays: tuple[float, ...],
-        building: Building,
-        given: dict[str, Any],
-    ) -> Frame:
-        """Return a frame whose members are made of their sections, under loads that are known.
-
-        Parameters
-        ----------
-        storeys, bays : tuple of float
-            Heights and widths between axes [m].
-        building : Building
-            The drawings.
-        given : dict
-            All other parameters of `Frame`: loads, masses and nodes as they are.
-        """
-        grid = _Grid(storeys, bays, building.columns, building.beams)
-        cells = grid.members(cls, building, given)
+            cells = building.columns, building.beams or None
+            return cls(heights, widths or None, *cells, **more)
+        members = grid.members(cls, building, more)
         if NOTES_ON.get():
-            grid.note_on_bars(given["beam_load"])
-        nodes = {node.name: node for node in given["nodes"]}
+            grid.note_on_bars(more["beam_load"])
+        nodes = {node.name: node for node in more["nodes"]}
         for name, panel in grid.panels(building).items():
             own = nodes.get(name, FrameNode(name))
             nodes[name] = own if own.panel is not None else replace(own, panel=panel)
-        given = given | {"nodes": tuple(nodes.values()), "building": building}
+        more["nodes"] = tuple(nodes.values())
         struts = [strut for one in grid.infilled(building.infills) for strut in one.members()]
-        given["members"] = (*given.get("members", ()), *struts)
-        return cls(storeys, bays or None, cells[0], cells[1] or None, **given)
+        more["members"] = (*building.members, *struts)
+        frame = cls(heights, widths or None, members[0], members[1] or None, **more)
+        object.__setattr__(frame, "building", replace(building, made=frame._statement))
+        return frame
 
     @cached_property
     def infilled(self) -> tuple[InfilledBay, ...]:
@@ -238,27 +266,9 @@ class Frame(model.Frame):
     def _groups(self) -> _core.Statement:
         """Return the groups of a case file, with drawings in place of springs where that is all."""
         building = self.building
-        if building is None:
+        if building is None or building.made != self._statement:
+            # Not drawn, or changed since, as by `without`.
             return self._statement
-        given: Any = self.storeys or (), self.bays or ()
-        storeys, bays = given
-        panels = _Grid(storeys, bays, building.columns, building.beams).panels(building)
-        own = [
-            replace(node, panel=None) if node.panel == panels.get(node.name) else node
-            for node in self.nodes
-        ]
-        nodes = tuple(node for node in own if node != FrameNode(node.name))
-        known = {one.name: getattr(self, one.name) for one in fields(model.Frame)}
-        struts = {name for one in self.infilled for name in one.struts}
-        known["members"] = tuple(one for one in self.members if one.name not in struts)
-        for name in ("storeys", "bays", "columns", "beams"):
-            known.pop(name)
-        with notes_off():
-            again = self.of_drawings(storeys, bays, building, known | {"nodes": nodes})
-        if again != self:
-            # It was changed since, as by `without`.
-            return self._statement
-        plain = replace(self, nodes=nodes, building=None, members=known["members"])
         cells = building.columns, building.beams
         drawings: dict[Section, str] = {}
         taken = {one.name for own in cells for one in own.values() if isinstance(one, FrameMember)}
@@ -277,8 +287,15 @@ class Frame(model.Frame):
             # A drawing with these hoops; no member may be of it.
             like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
             hoops = name_of(next((one for one in drawings if one.ties == hoops), like))
-        more = {"panel_hoops": hoops, "ends": building.ends if building.ends != "asce" else None}
-        statement = plain._state(cells, drawn, **more) + _infill_groups(building.infills)
+        more = {
+            "panel_hoops": hoops,
+            "ends": building.ends if building.ends != "asce" else None,
+            "live_share": building.live_share if any(building.live_load) else None,
+            "self_weight": building.self_weight or None,
+            "mass": building.mass,
+        }
+        statement = self._state(cells, drawn, building, **more)
+        statement += _infill_groups(building.infills)
         for section, name in drawings.items():
             about = {"name": _core.Text(name), "version": _core.Text(VERSION)}
             statement += _core.group("drawing", about) + section.drawing()
@@ -312,13 +329,12 @@ Frame.__doc__ = str(model.Frame.__doc__).replace(
 )
 
 
-def _masses(more: dict[str, Any], floors: Array, mass: str | None) -> None:
-    """Put floor masses that follow from loads into the arguments, or compare those given."""
-    given = more.get("floor_mass")
+def _masses(given: Any, floors: Array, mass: str | None) -> dict[str, Any]:
+    """Return floor masses: those that were given, which are compared, or those of the loads."""
     if given is None:
-        if mass is not None:
-            more["floor_mass"] = floors if len(set(floors.tolist())) > 1 else floors[:1]
-        return
+        if mass is None:
+            return {}
+        return {"floor_mass": floors if len(set(floors.tolist())) > 1 else floors[:1]}
     stated = np.broadcast_to(
         _arguments.vector(given, "frame: floor_mass", shape="1 or m"), floors.shape
     )
@@ -329,12 +345,13 @@ def _masses(more: dict[str, Any], floors: Array, mass: str | None) -> None:
             f"frame: floor_mass of floor {at + 1} is {stated[at]:.4g} kg, and its loads weigh "
             f"{floors[at]:.4g} kg; leave out floor_mass, or mass"
         )
+    return {"floor_mass": given}
 
 
-def _cells(given: Any, name: str) -> dict[tuple[int, int], Any]:
+def _cells(given: Any, name: str, lines: int) -> dict[tuple[int, int], Any]:
     """Return the cells of a grid; halves are a tuple."""
     kinds = "a Section, a pair of them, a FrameMember"
-    cells = model.cells_of(given, name, _is_cell, kinds)
+    cells = model.cells_of(given, name, _is_cell, kinds, lines)
     return {at: tuple(one) if isinstance(one, list) else one for at, one in cells.items()}
 
 
@@ -344,13 +361,12 @@ def _is_cell(one: Any) -> bool:
 
 
 def _node_loads(given: Any, lines: int) -> dict[tuple[int, int], float]:
-    if isinstance(given, Mapping):
-        for pair in given:
-            for number in pair:
-                _arguments.integer(number, "frame: node_load")
-        return {at: _arguments.number(load, "frame: node_load") for at, load in given.items()}
-    load = _arguments.number(given, "frame: node_load")
-    return {(line, 0): load for line in {1, lines}} if load else {}
+    rules = given if isinstance(given, Mapping) else {("outer", 0): given} if given else {}
+    return {
+        place: _arguments.number(load, "frame: node_load")
+        for pair, load in rules.items()
+        for place in model.places_of(pair, "node_load", lines)
+    }
 
 
 class _Grid:
@@ -363,11 +379,24 @@ class _Grid:
         columns: dict[tuple[int, int], Any],
         beams: dict[tuple[int, int], Any],
     ) -> None:
-        self.storeys, self.bays = storeys, bays
+        self.storeys, self.bays, self.given = storeys, bays, (columns, beams)
+        self.check_places("columns", columns, len(bays) + 1)
+        self.check_places("beams", beams, len(bays))
         lines, levels = range(1, len(bays) + 2), range(1, len(storeys) + 1)
         self.columns = {(i, k): _at(columns, i, k) for k in levels for i in lines}
         self.beams = {(i, k): _at(beams, i, k) for k in levels for i in lines[:-1]}
         self.kinds: tuple[dict[Any, FrameMember | None], ...] = ({}, {})
+
+    def check_places(self, name: str, cells: Mapping[tuple[int, int], Any], lines: int) -> None:
+        """Refuse places that the grid does not have."""
+        line = "bay" if name == "beams" else "line"
+        for at, storey in cells:
+            for what, given, most in ((line, at, lines), ("storey", storey, len(self.storeys))):
+                if not 0 <= given <= most:
+                    raise InputError(
+                        f"frame: {name}: {what} = {given}, but the frame has {most} {what}s; "
+                        "correct it, or give 0 for all"
+                    )
 
     def all_cells(self) -> list[Any]:
         return [one for one in (*self.columns.values(), *self.beams.values()) if one is not None]
@@ -381,6 +410,24 @@ class _Grid:
                 "one, or one for each"
             )
         return tuple(np.broadcast_to(values, len(self.storeys)).tolist())
+
+    def loads(self, building: Building) -> dict[str, Any]:
+        """Return loads of beams, loads of nodes and masses of floors, as arguments of a frame."""
+        loads = np.array(building.dead_load)
+        loads = loads + building.live_share * np.array(building.live_load)
+        if building.self_weight:
+            loads = loads + self.weights_of_beams()
+        nodes = {node.name: node for node in building.nodes}
+        for name, weight in self.weights(building.node_load, building.self_weight).items():
+            node = nodes.get(name, FrameNode(name))
+            nodes[name] = replace(node, load_y=node.load_y - weight)
+        floors = loads * sum(self.bays) / STANDARD_GRAVITY
+        for i, k in self.columns:
+            if (loaded := nodes.get(f"N-{i}-{k}")) is not None:
+                floors[k - 1] -= loaded.load_y / STANDARD_GRAVITY
+        more: dict[str, Any] = {"beam_load": loads if len(set(loads.tolist())) > 1 else loads[:1]}
+        more |= _masses(building.floor_mass, floors, building.mass)
+        return more | {"nodes": tuple(nodes.values())}
 
     def weights_of_beams(self) -> Array:
         """Return the weight of the beams of each floor, of their mean section [N/m]."""

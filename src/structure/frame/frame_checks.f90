@@ -33,6 +33,9 @@ contains
       do i = 1, size(record%floor)
          call record%floor(i)%check('floor', messages)
       end do
+      do i = 1, size(record%node_load)
+         call record%node_load(i)%check('node_load', messages)
+      end do
       do i = 1, size(record%kind)
          associate (k => record%kind(i))
             known = messages%count

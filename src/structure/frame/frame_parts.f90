@@ -103,12 +103,12 @@ contains
       end do
       do s = 1, storeys
          do l = 1, lines
-            call add_cell(self, record, 'C', l, s, [(s - 1)*lines + l, s*lines + l])
+            call add_cell(self, record, 'C', l, s, lines, [(s - 1)*lines + l, s*lines + l])
          end do
       end do
       do s = 1, storeys
          do l = 1, bays
-            call add_cell(self, record, 'B', l, s, [s*lines + l, s*lines + l + 1])
+            call add_cell(self, record, 'B', l, s, bays, [s*lines + l, s*lines + l + 1])
          end do
       end do
       self%grid_members = self%members
@@ -147,9 +147,12 @@ contains
       integer :: i
 
       do i = 1, size(record%floor)
-         call check_storey('floor', record%floor(i)%storey)
-         if (abs(record%floor(i)%load) > 0.0_wp .and. bays == 0) then
-            call messages%add('floor: load acts on beams, and there are none; give it to the nodes as load_y')
+         if (record%floor(i)%floor > storeys) then
+            call refuse('floor: floor', record%floor(i)%floor, 'floors', storeys)
+         end if
+         if (abs(record%floor(i)%dead_load) > 0.0_wp .and. bays == 0) then
+            call messages%add('floor: dead_load acts on beams, and there are none; give it to the nodes '// &
+                              'as load_y')
          end if
       end do
       do i = 1, size(record%column_of)
@@ -170,6 +173,10 @@ contains
          integer, intent(in) :: most
 
          call check_storey(group, cell%storey)
+         if (cell%line > 0 .and. cell%lines /= 'all') then
+            call messages%add(group//': '//key//' and '//key//"s = '"//trim(cell%lines)// &
+                              "' are given; remove one")
+         end if
          if (cell%kind == 'none') then
             continue
          else if (cell%is_infill) then
@@ -206,7 +213,7 @@ contains
 
       mass = 0.0_wp
       do i = 1, size(record%floor)
-         if (record%floor(i)%storey == 0 .or. record%floor(i)%storey == storey) mass = record%floor(i)%mass
+         if (any(record%floor(i)%floor == [0, storey])) mass = record%floor(i)%mass
       end do
       part = 1.0_wp
       if (lines > 1) then
@@ -219,11 +226,12 @@ contains
    end subroutine put_mass
 
    !> A column or a beam of the grid.
-   subroutine add_cell(self, record, letter, line, storey, node)
+   subroutine add_cell(self, record, letter, line, storey, last, node)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       character(len=1), intent(in) :: letter
-      integer, intent(in) :: line, storey, node(2)
+      !> Place, number of lines or bays, nodes
+      integer, intent(in) :: line, storey, last, node(2)
       type(frame_member) :: member
       integer :: i
 
@@ -234,7 +242,7 @@ contains
       else
          call choose(record%beam_of)
          do i = 1, size(record%floor)
-            if (any(record%floor(i)%storey == [0, storey])) member%load = record%floor(i)%load
+            if (any(record%floor(i)%floor == [0, storey])) member%load = record%floor(i)%dead_load
          end do
       end if
       if (member%kind_of == left_out) return
@@ -249,7 +257,7 @@ contains
          integer :: j
 
          do j = 1, size(cell)
-            if (all(cell(j)%line /= [0, line]) .or. all(cell(j)%storey /= [0, storey])) cycle
+            if (.not. cell(j)%fits(line, storey, last)) cycle
             member%kind_of = findloc(record%kind%name == cell(j)%kind, .true., dim=1)
             if (cell(j)%kind == 'none') member%kind_of = left_out
             member%rigid = cell(j)%rigid_end

@@ -21,17 +21,26 @@ module rbs_structure_frame_frame_record
    character(len=*), parameter :: support_names = 'free roller pinned fixed'
 
    !> The groups of a frame; all but the first may appear several times.
-   character(len=12), parameter, public :: frame_groups(10) = [character(len=12) :: &
-      'frame', 'floor', 'member_kind', 'column_of', 'beam_of', 'infill', 'infill_of', 'node', 'member', &
-      'loss']
+   character(len=12), parameter, public :: frame_groups(11) = [character(len=12) :: &
+      'frame', 'floor', 'node_load', 'member_kind', 'column_of', 'beam_of', 'infill', 'infill_of', 'node', &
+      'member', 'loss']
 
-   !> Mass and load of floors.
+   !> Mass and load of floors, 0: of all.
    type, extends(visited_record), public :: floor_record
-      integer :: storey = 0
-      real(wp) :: mass = 0.0_wp, load = 0.0_wp
+      integer :: floor = 0
+      real(wp) :: mass = 0.0_wp, dead_load = 0.0_wp, live_load = 0.0_wp
    contains
       procedure :: visit => visit_floor
    end type floor_record
+
+   !> Weights on the nodes of floors, which Python makes into loads of the nodes.
+   type, extends(visited_record), public :: node_load_record
+      integer :: line = 0, floor = 0
+      character(len=8) :: lines = 'all'
+      real(wp) :: load = unset
+   contains
+      procedure :: visit => visit_node_load
+   end type node_load_record
 
    !> A kind of member: an elastic beam, springs at the points of a Gauss-Lobatto rule that yield, or
    !> springs that are given one by one.
@@ -59,12 +68,15 @@ module rbs_structure_frame_frame_record
    type, extends(visited_record), public :: cell_record
       logical :: is_beam = .false., is_infill = .false.
       integer :: line = 0, storey = 0
+      !> Which lines or bays where no number is given: all of them, the two outer, or those between
+      character(len=8) :: lines = 'all'
       !> Name of a kind; of a drawn member that of a drawing, and of its second half if it is another one
       character(len=name_length) :: kind = '', kind_to = ''
       !> In all nodes, or at the two ends where these are given
       real(wp) :: rigid_end = 0.0_wp, rigid_from = unset, rigid_to = unset
    contains
       procedure :: visit => visit_cell
+      procedure :: fits
    end type cell_record
 
    !> A node, or additions to a node of the grid.
@@ -117,7 +129,12 @@ module rbs_structure_frame_frame_record
       !> Of drawn members: the part of a node that is rigid, and whose ties are in the panels of the nodes
       real(wp) :: ends = unset
       character(len=name_length) :: panel_hoops = ''
+      !> What loads and masses Python makes of the loads of floors and of the sections
+      real(wp) :: live_share = unset
+      logical :: self_weight = .false.
+      character(len=16) :: mass = 'of_floors'
       type(floor_record), allocatable :: floor(:)
+      type(node_load_record), allocatable :: node_load(:)
       type(kind_record), allocatable :: kind(:)
       type(cell_record), allocatable :: column_of(:), beam_of(:), infill_of(:)
       type(infill_record), allocatable :: infill(:)
@@ -142,12 +159,15 @@ contains
       type(cell_record) :: beam, infilled
 
       if (.not. allocated(self%floor)) then
-         allocate (self%floor(0), self%kind(0), self%column_of(0), self%beam_of(0), self%infill(0), &
-                   self%infill_of(0), self%node(0), self%member(0), self%loss(0), self%spring(0))
+         allocate (self%floor(0), self%node_load(0), self%kind(0), self%column_of(0), self%beam_of(0), &
+                   self%infill(0), self%infill_of(0), self%node(0), self%member(0), self%loss(0), &
+                   self%spring(0))
       end if
       select case (group)
       case ('floor')
          self%floor = [self%floor, floor_record()]
+      case ('node_load')
+         self%node_load = [self%node_load, node_load_record()]
       case ('member_kind')
          self%kind = [self%kind, kind_record()]
       case ('column_of')
@@ -178,6 +198,8 @@ contains
       select case (group)
       case ('floor')
          number = size(self%floor)
+      case ('node_load')
+         number = size(self%node_load)
       case ('member_kind')
          number = size(self%kind)
       case ('column_of')
@@ -213,6 +235,8 @@ contains
       select case (group)
       case ('floor')
          call self%floor(i)%visit(v)
+      case ('node_load')
+         call self%node_load(i)%visit(v)
       case ('member_kind')
          call self%kind(i)%visit(v)
       case ('column_of')
@@ -257,17 +281,36 @@ contains
                  'that is rigid in columns and beams; without it the rule of ASCE 41-17', optional=.true.)
       call v%word('panel_hoops', self%panel_hoops, 'of drawn members: drawing whose ties are in the '// &
                   'panels of the nodes, or ''none''; without it the nodes are rigid')
+      call v%key('live_share', self%live_share, '', bound_type(0.0_wp, 1.0_wp), 'part of the live load '// &
+                 'that acts, 0.3 without it', optional=.true.)
+      call v%key('self_weight', self%self_weight, 'whether drawn members have their own weight, 25 kN/m3')
+      call v%word('mass', self%mass, 'masses of the floors: as given with them, or those of the loads', &
+                  'of_floors from_loads')
    end subroutine visit_frame
 
    subroutine visit_floor(self, v)
       class(floor_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      call v%key('storey', self%storey, '', not_negative, 'floor that is meant, 0 for all')
+      call v%key('floor', self%floor, '', not_negative, 'floor that is meant, 0 for all')
       call v%key('mass', self%mass, 'kg', not_negative, 'mass of the floor, shared by its nodes as the '// &
                  'widths beside them; its weight acts as far as it is given as a load')
-      call v%key('load', self%load, 'N/m', any_number, 'dead load on the beams of the floor, downward')
+      call v%key('dead_load', self%dead_load, 'N/m', any_number, 'dead load on the beams of the floor, '// &
+                 'downward')
+      call v%key('live_load', self%live_load, 'N/m', any_number, 'live load on them, of which '// &
+                 'live_share acts')
    end subroutine visit_floor
+
+   subroutine visit_node_load(self, v)
+      class(node_load_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
+      call v%word('lines', self%lines, 'which lines in place of a number', 'all outer inner')
+      call v%key('floor', self%floor, '', not_negative, 'floor from the ground up, 0 for all')
+      call v%key('load', self%load, 'N', any_number, 'weight of walls and facades on each of the nodes; '// &
+                 'the last group that fits counts')
+   end subroutine visit_node_load
 
    subroutine visit_kind(self, v)
       class(kind_record), intent(inout) :: self
@@ -325,8 +368,10 @@ contains
 
       if (self%is_beam .or. self%is_infill) then
          call v%key('bay', self%line, '', not_negative, 'bay from the left, 0 for all')
+         call v%word('bays', self%lines, 'which bays in place of a number', 'all outer inner')
       else
          call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
+         call v%word('lines', self%lines, 'which lines in place of a number', 'all outer inner')
       end if
       call v%key('storey', self%storey, '', not_negative, 'storey from the ground up, 0 for all')
       if (self%is_infill) then
@@ -388,6 +433,17 @@ contains
       call v%word('member', self%member, 'name of the member that is lost', required=.true.)
       call v%key('time', self%time, 's', any_number, 'time of the record from which on it carries nothing')
    end subroutine visit_loss
+
+   !> Whether a group is of a line, or bay, and a storey.
+   pure logical function fits(self, line, storey, last)
+      class(cell_record), intent(in) :: self
+      integer, intent(in) :: line, storey
+      !> Number of lines or bays
+      integer, intent(in) :: last
+
+      fits = any(self%line == [0, line]) .and. any(self%storey == [0, storey])
+      if (self%lines /= 'all') fits = fits .and. ((line == 1 .or. line == last) .eqv. self%lines == 'outer')
+   end function fits
 
    !> Height of the grid or of the nodes [m]; values that are not given count as zero.
    pure real(wp) function total_height(self) result(height)
