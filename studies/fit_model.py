@@ -1,6 +1,6 @@
 """Fit the free numbers of the layered model to all tests, and judge them on series left out.
 
-    python studies/fit_model.py FOLDER [--groups 8] [--steps 6] [--jobs 2] [--write]
+    python studies/fit_model.py FOLDER [--near] [--groups 8] [--steps 6] [--jobs 2] [--write]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Doubtful labels are mended by
 the rules of `studies/doubts.py`, never by the error of the model. The free numbers are the rows of
@@ -14,7 +14,9 @@ with the errors of peak and energy: what no number mends does not pull. Its weig
 **Search.** Gauss-Newton with damping from the priors, all numbers at once. Groups of series are
 left out from the first step on: a search without a group never sees one of its tests, neither in
 its slopes nor in what decides on a step. What has seen all tests is the form of the model and its
-fixed values, some of which are rounded results of earlier fits (docs/peer.md).
+fixed values, some of which are rounded results of earlier fits (docs/peer.md). `--near` begins each
+search where that of the last version ended, the ones without a group where the same group was left
+out, with slopes of each test at the values of the last version: for a small change of the model.
 
 `--write` puts the values into the table, and into `studies/results` what `spread_table.py` takes:
 the values with and without each group, and the scores of the tests that were left out.
@@ -178,12 +180,14 @@ class Search:
             gradient = gradient + w * slopes[i].T @ score.error
         return matrix, gradient
 
-    def fit(self, members: list[int], steps: int) -> tuple[np.ndarray, np.ndarray]:
+    def fit(
+        self, members: list[int], steps: int, start: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return the places that are best for some tests, and the matrix there.
 
         Slopes are taken anew every second step.
         """
-        places, slopes = self.start, self.first
+        places, slopes = self.start if start is None else start, self.first
         scores = self.scores(members, places)
         least = self.loss(members, places, scores)
         for number in range(steps):
@@ -233,6 +237,7 @@ def main() -> None:
     """Fit, leave out, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
+    parser.add_argument("--near", action="store_true", help="begin at the last version")
     parser.add_argument("--groups", type=int, default=8)
     parser.add_argument("--steps", type=int, default=6)
     parser.add_argument("--jobs", type=int, default=2)
@@ -247,15 +252,19 @@ def main() -> None:
             pool = stack.enter_context(
                 ProcessPoolExecutor(given.jobs, initializer=load, initargs=(given.folder,))
             )
-        search = Search(cases, pool)
+        last: list[np.ndarray | None] = [None] * (given.groups + 1)
+        if given.near:
+            kept = json.loads((ROOT / "studies/results/fit_model.json").read_text("utf-8"))
+            last = [np.array(one) for one in (kept["all"], *kept["without"])]
+        search = Search(cases, pool, last[0])
         everyone = list(range(len(cases)))
         places, matrix = search.fit(everyone, given.steps)
         fitted = np.array([score.row for score in search.scores(everyone, places)])
         print("Fit to all tests\n\n" + "\n".join(summary(fitted, cases)), flush=True)
         left, own = np.full_like(fitted, np.nan), []
-        for outside in groups_of(cases, given.groups):
+        for outside, start in zip(groups_of(cases, given.groups), last[1:], strict=True):
             inside = [i for i in everyone if i not in set(outside)]
-            own.append(search.fit(inside, given.steps)[0])
+            own.append(search.fit(inside, given.steps, start)[0])
             left[outside] = [score.row for score in search.scores(outside, own[-1])]
     print("\nEvery series left out once\n\n" + "\n".join(summary(left, cases)))
     gap = left[:, 0].mean() - fitted[:, 0].mean()

@@ -37,7 +37,11 @@ from rbsdem.checks.code_values import yield_drift
 from rbsdem.codes import CodeValues, code_values
 from rbsdem.curves.envelope import IDEALISATIONS, envelope
 from rbsdem.errors import InputError
-from rbsdem.section.strength import arch_factor, axial_failure_drift, shear_strength_mcft
+from rbsdem.section.strength import (
+    axial_failure_drift,
+    column_shear_strength,
+    shear_strength_mcft,
+)
 from rbsdem.springs import Elastic, PeakOriented
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -182,9 +186,9 @@ def numbers(found: dict[str, list[peer.Prediction]]) -> None:
 
 
 def strengths(specimens: list[peer.Specimen]) -> None:
-    """Print the largest force of tests over the shear strength, without and with the arch."""
+    """Print the largest force of tests over the shear strength of sections and of columns."""
     print(
-        "\n| largest force over shear strength: mean, sd of ln | tests | of sections | with arch |"
+        "\n| largest force over shear strength: mean, sd of ln | tests | of sections | of columns |"
     )
     print("| --- | ---: | ---: | ---: |")
     for kind in [kind for kind in CLASSES if "Shear" in kind]:
@@ -193,7 +197,7 @@ def strengths(specimens: list[peer.Specimen]) -> None:
             if s.kind == kind and (kind.endswith(" Shear") or s.axial_load_ratio < 0.5):
                 hinge = peer.draw(s).section, s.length, s.axial_load
                 force = np.max(np.abs(s.test().force))
-                law = [shear_strength_mcft(*hinge, arch=k) for k in (1.0, arch_factor(*hinge))]
+                law = [shear_strength_mcft(*hinge), column_shear_strength(*hinge)]
                 logs.append(np.log(force / np.array(law)))
         if not logs:
             continue

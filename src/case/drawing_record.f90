@@ -263,7 +263,7 @@ contains
                            'made of it; give it, or remove the groups of the section')
       else
          call self%check('drawing', messages)
-         if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.7'")
+         if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.8'")
          if (of_frame) then
             if (self%name == '') call messages%add('drawing: name is missing; members of the frame name it')
          else

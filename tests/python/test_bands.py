@@ -130,8 +130,15 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
     rise = (wide.energy.upper - wide.energy.value) / (found.energy.upper - found.energy.value)
     assert rise == pytest.approx((1.5**3 - 1) / 0.5)
     assert wide.drift_at_loss.lower == pytest.approx(0.7**3 * found.drift_at_loss.lower)
-    inside = rbsdem.peer.band(column(), PATH[:3], scatter=replace(NONE, outside=(9.0,) * 4))
+    both = {"outside": (9.0,) * 4, "small": (1.75,) * 4}
+    inside = rbsdem.peer.band(column(), PATH[:3], scatter=replace(NONE, **both))
     assert inside.width == pytest.approx(0.2)
+    # A column of a depth below that of the tests has a factor of its own.
+    half = replace(SECTION, width=0.19, depth=0.19)
+    with pytest.warns(AccuracyWarning, match=r"depth = 0\.19 m is outside"):
+        model = rbsdem.section.column(half, 0.8, axial_load=2e5)
+        small = rbsdem.peer.band(model, PATH[:3], scatter=replace(NONE, **both))
+    assert small.width == pytest.approx(1.75 * 0.2)
     with pytest.warns(AccuracyWarning, match="there are no ties"):
         rbsdem.section.column(replace(SECTION, ties=None, layout=None), 1.6, axial_load=1.2e6)
 

@@ -265,7 +265,7 @@ def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, 
     wrong = tmp_path / "wrong.nml"
     for old, new, text in (
         ("kind = 'section-1'", "kind = 'section-9'", "section-9"),
-        ("version = '2026.7'", "version = '2020.1'", "'2020.1' is not known"),
+        ("version = '2026.8'", "version = '2020.1'", "'2020.1' is not known"),
     ):
         wrong.write_text(path.read_text().replace(old, new, 1))
         found = command("check", wrong)
@@ -287,7 +287,7 @@ def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, 
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (("version = '2026.7'", "version = '2020.1'"), "version = '2020.1' is not known"),
+        (("version = '2026.8'", "version = '2020.1'"), "version = '2020.1' is not known"),
         (("name = 'section-1', ", ""), "drawing: name is missing"),
         (("kind = 'section-1'", "kind = 'section-9'"), "section-9"),
         (("name = 'section-2', v", "name = 'section-1', v"), "'section-1': another drawing"),
@@ -308,7 +308,7 @@ def test_faults_of_drawn_cases_are_named(drawn, change, text):
 def test_a_column_has_one_drawing():
     column = rbsdem.section.column(C, 1.6, axial_load=400e3)
     case = column.to_namelist() + LOADING
-    more = "&drawing name = 'x', version = '2026.7' /\n"
+    more = "&drawing name = 'x', version = '2026.8' /\n"
     with pytest.raises(rbsdem.InputError, match="a column has one; remove the others"):
         case_of_text(case + more)
 

@@ -329,7 +329,7 @@ def drawn_text(**changes: str) -> str:
     ("old", "new"), [("b0 = 0.5", "b0 = 0.4"), ("width = 0.4", "width = 0.41")]
 )
 def test_springs_that_are_not_as_drawn_are_told(tmp_path, old, new):
-    with pytest.warns(AccuracyWarning, match="shear.* other than layered 2026.7 draws"):
+    with pytest.warns(AccuracyWarning, match="shear.* other than layered 2026.8 draws"):
         case = read_back(tmp_path, drawn_text(**{old: new}))
     assert ("flexure" in case.column.replaced) == (old == "width = 0.4")
 

@@ -594,7 +594,7 @@ def test_a_case_with_a_drawing_keeps_what_belongs_to_it(post):
     assert band["upper"]
     given["columns"][0]["case"] = text.replace("cover = 0.013", "cover = 0.014")
     (answer,) = post("loops", state=given)["columns"]
-    assert "other than layered 2026.7 draws" in answer["notes"][0]
+    assert "other than layered 2026.8 draws" in answer["notes"][0]
 
 
 def test_a_case_in_the_page_names_no_file(post, case_text):

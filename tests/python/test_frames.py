@@ -18,6 +18,7 @@ from strategies_frames import frame as random_frame
 
 import rbsdem
 from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, plot
+from rbsdem.errors import InputError
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
 from rbsdem.model.column import bodies
 from rbsdem.springs import Bilinear, Elastic, PeakOriented, Pinching, Takeda
@@ -1128,6 +1129,17 @@ def bent(middle: FrameMember = BRITTLE, **more) -> Frame:
     return Frame.grid([3.0], [5.0, 5.0], columns={(0, 1): COLUMN, (2, 1): middle}, **given | more)
 
 
+def test_a_factor_on_the_drift_of_axial_failure():
+    frame = bent()
+    kinds = frame.with_axial_failure(2.0).named_kinds
+    assert sorted(str(kind.failure_drift) for kind in kinds.values()) == ["0.2", "None", "None"]
+    assert frame.with_axial_failure(1.0) == frame
+    with pytest.raises(InputError, match="no member has a failure_drift"):
+        bent(replace(BRITTLE, failure_drift=None, failure_load=None)).with_axial_failure(2.0)
+    with pytest.raises(InputError, match="must be above 0"):
+        frame.with_axial_failure(0.0)
+
+
 def test_a_column_that_failed_in_shear_sheds_its_load():
     """At the drift of its axial load; at rest afterwards the others carry the weight."""
     frame = bent(damping=rbsdem.Damping(mass=20.0))
@@ -1143,6 +1155,10 @@ def test_a_column_that_failed_in_shear_sheds_its_load():
     assert drift[row - 1] < limit[row - 1]
     assert drift[row] >= 0.1 / (1 + run.member_axial[row - 1, at] / 200e3) * (1 - 1e-3)
     assert lost.member == "C-2-1"
+    # Tests lose their load at half to two and a half times the drift.
+    assert (lost.lower, lost.upper) == pytest.approx((0.5 * drift[row], 2.5 * drift[row]))
+    later = rbsdem.time_history(frame.with_axial_failure(1.2), t, **load)
+    assert [event.time for event in later.events if event.name == "lost"] > [lost.time]
     # What has not failed goes the same way to the bit; then it carries nothing.
     whole = rbsdem.time_history(
         bent(replace(BRITTLE, failure_drift=None, failure_load=None), damping=frame.damping),

@@ -124,7 +124,7 @@ def test_a_section_makes_the_column_of_the_specimen(model):
     column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model=model)
     drawn = peer.column(SPECIMEN, model)
     assert (column.height, column.n, column.kinematics) == (1.6, drawn.n, "pdelta")
-    assert column.model == {"layered": "layered 2026.7", "paper": "paper"}[model]
+    assert column.model == {"layered": "layered 2026.8", "paper": "paper"}[model]
     assert column.axial_load == drawn.axial_load
     assert column.mass == pytest.approx(0.4 * 0.4 * 1.6 * 2400)
     force = rbsdem.cyclic(column, displacement=LOOP).force
@@ -144,7 +144,7 @@ def test_the_table_of_parameters():
     """Its values are part of every answer that names the version: a refit is a new version."""
     values = parameters().values
     digest = hashlib.sha256(repr(sorted(values.items())).encode()).hexdigest()
-    assert (parameters().version, len(values), digest[:16]) == ("2026.7", 40, "cbb0ca8993900d8a")
+    assert (parameters().version, len(values), digest[:16]) == ("2026.8", 40, "cbb0ca8993900d8a")
     for name, row in table().items():
         assert row.meaning, name
         assert not row.low > 1, name
@@ -156,11 +156,11 @@ def test_the_table_of_parameters():
 def test_changed_parameters_are_named_as_changed():
     column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
     changed = column.with_parameters(steel_strength=1.0)
-    assert (column.version, changed.version) == ("2026.7", "2026.7 changed")
-    assert (column.model, changed.model) == ("layered 2026.7", "layered 2026.7 changed")
-    assert "model = 'layered 2026.7'" in column.to_namelist()
+    assert (column.version, changed.version) == ("2026.8", "2026.8 changed")
+    assert (column.model, changed.model) == ("layered 2026.8", "layered 2026.8 changed")
+    assert "model = 'layered 2026.8'" in column.to_namelist()
     assert repr(column) == (
-        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.7')"
+        "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.8')"
     )
     back = changed.with_parameters(steel_strength=parameters().steel_strength)
     assert back == column
@@ -219,7 +219,7 @@ def test_a_calibrated_column_keeps_what_was_replaced():
     fit = rbsdem.calibrate(column, test, ["steel_strength"], evaluations=40)
     assert fit.values["steel_strength"] == pytest.approx(1.0, rel=1e-3)
     assert (fit.column.top_mass, fit.column.damping) == (2e4, column.damping)
-    assert fit.column.version == "2026.7 changed"
+    assert fit.column.version == "2026.8 changed"
 
 
 def test_a_layered_column_comes_back_from_pickle_and_copy():

@@ -25,7 +25,7 @@ from rbsdem.model.rows import LimitState, LimitStates, Response, Rows
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.strength import axial_failure_drift
+from rbsdem.section.strength import axial_failure_drift, axial_failure_interval
 
 #: The limit states that criteria find, and what each is.
 WATCHED: dict[str, str] = {
@@ -418,7 +418,9 @@ def _axial_failure(result: Rows, first: dict[str, LimitState]) -> list[LimitStat
     if rows.size == 0:
         return []
     source = "friction along the shear crack, Elwood and Moehle 2005"
-    return [_state(result, "axial_failure", float(rows[0]), limit, source)]
+    state = _state(result, "axial_failure", float(rows[0]), limit, source)
+    low, high = axial_failure_interval(column.drawing.section, column.axial_load)
+    return [replace(state, lower=low, upper=high)]
 
 
 def _state(result: Rows, name: str, row: float, threshold: float, source: str) -> LimitState:

@@ -83,7 +83,7 @@ class Prediction:
     specimen : Specimen
         The test.
     model : str
-        Name of the model with the version of its parameters, as "layered 2026.7".
+        Name of the model with the version of its parameters, as "layered 2026.8".
     status : str
         "completed", "stopped" (the analysis ended before the test did), "failed" (there is no
         analysis), or "no history" (there is nothing to compare with; not counted).

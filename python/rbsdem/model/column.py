@@ -315,7 +315,7 @@ class Column:
     footing : Footing, optional
         A footing on springs, between the ground and the column.
     model : str, optional
-        The model that made the column and the version of its parameters ("layered 2026.7"). It has
+        The model that made the column and the version of its parameters ("layered 2026.8"). It has
         no effect on the analysis.
 
     Raises

@@ -841,6 +841,35 @@ class Frame:
         members = tuple(replace(one, kind=changed(one.kind) or one.kind) for one in self.members)
         return replace(self, columns=columns, beams=beams, members=members)
 
+    def with_axial_failure(self, factor: float) -> Self:
+        """Return the frame whose members lose their axial load at `factor` times the drift.
+
+        A collapse that stands on this drift is told at both ends of its interval,
+        `rbsdem.section.strength.AXIAL_FAILURE_FACTORS`.
+
+        Parameters
+        ----------
+        factor : float
+            Above 0.
+
+        Raises
+        ------
+        InputError
+            If the factor is not above 0, or no member can lose its axial load.
+        """
+        factor = _arguments.number(factor, "with_axial_failure: factor", above=0)
+        kinds = {
+            name: replace(kind, failure_drift=factor * kind.failure_drift)
+            for name, kind in self.named_kinds.items()
+            if kind.failure_drift is not None
+        }
+        if not kinds:
+            raise InputError(
+                "with_axial_failure: no member has a failure_drift; members with axial_load of "
+                "rbsdem.section.member have one"
+            )
+        return self.with_kinds(kinds)
+
     def load_of(self, member: str) -> float:
         """Return the dead load on a member, downward, per length along x [N/m]."""
         for own in self.members:

@@ -16,7 +16,7 @@ from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
 from rbsdem.model.frame import Frame, FrameSpring, MemberGeometry, index_of, parabola
-from rbsdem.model.rows import LimitState, LimitStates, Rows
+from rbsdem.model.rows import AXIAL_FAILURE_FACTORS, LimitState, LimitStates, Rows
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
 #: Names of the springs' deformations and forces in rows, by group.
@@ -507,7 +507,16 @@ class FrameResult(Rows):
             if member:
                 at = self.summary["snap_time"] if what == "snap" else float(self.time[-1])
                 wholes.append((self.frame.parts.members[member - 1], what, at))
-        found += [(what, at, {"member": name, "group": "member"}) for name, what, at in wholes]
+        for name, what, at in wholes:
+            where = {"member": name, "group": "member"}
+            if what == "lost" and self.frame.kinds[name].failure_drift is not None:
+                row = min(int(np.searchsorted(self.time, at * (1 - 1e-12))), self.time.size - 1)
+                drift = abs(float(self._chord(self.frame.geometry[name])[row]))
+                where |= {
+                    end: factor * drift
+                    for end, factor in zip(("lower", "upper"), AXIAL_FAILURE_FACTORS, strict=True)
+                }
+            found.append((what, at, where))
         rows = np.searchsorted(self.time, [at * (1 - 1e-12) for _, at, _ in found])
         return LimitStates(
             (

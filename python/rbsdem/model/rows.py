@@ -92,6 +92,14 @@ FORMAT_VERSION = 2
 SAVED = ("channels", "summary", "call", "state", "reached")
 
 
+AXIAL_FAILURE_FACTORS = (0.5, 2.5)
+"""Ends of the 80 % interval of a measured drift at axial failure over that of Elwood and Moehle.
+
+Of rectangular columns of publications that the law has not seen (twins with one drawing differ by a
+factor of up to 2.9); `studies/new_tests.py` prints what they hold.
+"""
+
+
 @dataclass(frozen=True)
 class LimitState:
     """One limit state, where it is reached first.
@@ -129,6 +137,9 @@ class LimitState:
         "start", "end", or the place between them in shares of the clear length; "" in a panel.
     side : int
         1 or -1; 0 of a member as a whole.
+    lower, upper : float
+        Ends of the 80 % interval of tests about the drift of the structure, or of the member, where
+        the state is a loss of the axial load; NaN of others.
     """
 
     name: str
@@ -143,6 +154,8 @@ class LimitState:
     group: str = ""
     end: str = ""
     side: int = 0
+    lower: float = math.nan
+    upper: float = math.nan
 
 
 class LimitStates(Tabular):
@@ -197,6 +210,8 @@ class LimitStates(Tabular):
         units = {"time": "time_s" if self.result.dynamic else "point"}
         units |= {"displacement": "displacement_m", "force": "force_N"}
         frame = data_frame(rows, [field.name for field in fields(LimitState)])
+        if not any(math.isfinite(state.upper) for state in self):
+            frame = frame.drop(columns=["lower", "upper"])
         if not any(state.member for state in self):
             frame = frame.drop(columns=["member", "group", "end", "side"])
         elif not any(state.source for state in self):

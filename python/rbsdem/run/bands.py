@@ -31,6 +31,7 @@ from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.run.result import reached_force
+from rbsdem.section.curvature import RANGE
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.strength import shear_sizes
@@ -80,6 +81,8 @@ class Scatter:
     outside : (float, float, float, float), optional
         By what the band is wider outside the range of the tests, and the logarithms of the ends of
         the three intervals, in their order.
+    small : (float, float, float, float), optional
+        The same for columns whose depth is below the range of the tests.
     """
 
     strength: tuple[float, float]
@@ -91,6 +94,7 @@ class Scatter:
     energy: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     drift: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     outside: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    small: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
 
 
 @cache
@@ -336,7 +340,7 @@ def band(
     near = near_shear(column, peak)
     features = Features(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
-    wider, *powers = scatter.outside if column.warnings else (1.0, 1.0, 1.0, 1.0)
+    wider, *powers = _beyond(column, scatter)
     widen = wider * between(scatter.force, features)
     values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
@@ -357,6 +361,14 @@ def band(
         near_shear=near,
         warnings=warnings,
     )
+
+
+def _beyond(column: LayeredColumn, scatter: Scatter) -> tuple[float, ...]:
+    """Return by what bands and intervals are wider than inside the range of the tests."""
+    if not column.warnings:
+        return (1.0, 1.0, 1.0, 1.0)
+    small = column._drawing.section.depth < RANGE["depth"][0] * (1.0 - 1e-9)
+    return scatter.small if small else scatter.outside
 
 
 def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number: int) -> Array:

@@ -41,7 +41,7 @@ _IN_FLEXURE = 0.6
 
 
 def model_name(model: str, model_parameters: ModelParameters | None = None) -> str:
-    """Return the name of a model with the version of its parameters, as "layered 2026.7".
+    """Return the name of a model with the version of its parameters, as "layered 2026.8".
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def column(
     ... )
     >>> column = rbsdem.section.column(section, 1.6, axial_load=744e3)
     >>> column.n, column.version
-    (2, '2026.7')
+    (2, '2026.8')
     """
     checked_section(section)
     model = _arguments.choice(model, "model", MODELS)

@@ -29,7 +29,7 @@ RANGE: dict[str, tuple[float, float, float, str]] = {
     "concrete strength": (16e6, 110e6, 1e6, " MPa"),
     "yield stress of the bars": (240e6, 590e6, 1e6, " MPa"),
     "reinforcement ratio": (0.0045, 0.0605, 1.0, ""),
-    "depth": (0.15, 0.65, 1.0, " m"),
+    "depth": (0.20, 0.65, 1.0, " m"),
     "shear span over depth": (1.5, 8.0, 1.0, ""),
     "yield stress of the ties times their ratio": (0.3e6, 16e6, 1e6, " MPa"),
     "tie spacing over bar diameter": (1.2, 18.0, 1.0, ""),

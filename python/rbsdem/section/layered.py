@@ -309,7 +309,7 @@ class LayeredColumn(Column):
 
     @property
     def version(self) -> str:
-        """Version of the parameters, as "2026.7", or "2026.7 changed"."""
+        """Version of the parameters, as "2026.8", or "2026.8 changed"."""
         return self._drawing.parameters.label
 
     @property

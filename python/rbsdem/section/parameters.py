@@ -15,7 +15,7 @@ from types import MappingProxyType
 from rbsdem import _arguments, _package
 from rbsdem.errors import InputError
 
-VERSION = "2026.7"
+VERSION = "2026.8"
 """Version of the parameters."""
 
 #: Names that stand for a factor on several parameters: which, and what they are.
@@ -115,7 +115,7 @@ class ModelParameters:
 
     @property
     def label(self) -> str:
-        """The version, as "2026.7", or "2026.7 changed" where parameters differ from it."""
+        """The version, as "2026.8", or "2026.8 changed" where parameters differ from it."""
         changed = self.version == VERSION and self.own
         return f"{self.version} changed" if changed else self.version
 

@@ -33,10 +33,12 @@ from rbsdem.section.curvature import checked_furthest, checked_load, column_leng
 from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.strength import (
+    SQUAT,
     arch_factor,
     axial_failure_drift,
     axial_strut,
     bond_demand,
+    column_shear_strength,
     shear_sizes,
     shear_strength_mcft,
     shear_strength_sezen,
@@ -490,8 +492,9 @@ def shear_spring(
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
         (2004), which is that of a principal tension; then has `cracked_shear_stiffness`; yields
-        near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`, in a wall with
-        an arch from two depths on and with the strut of the axial load; loses its force
+        near `rbsdem.section.strength.column_shear_strength`, in a wall near
+        `rbsdem.section.strength.shear_strength_mcft` with an `arch_factor` from two depths on and
+        the `axial_strut`; loses its force
         by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
         has a negative side of its own, that of the section upside down.
     dict of str to (float, float)
@@ -526,10 +529,9 @@ def shear_spring(
     lambda_h = s_min = 0.0
     if joint is not None and given.shear_decay > 0.0:
         lambda_h = joint.yield_work / given.shear_decay / unit
-        sizes = shear_sizes(section)
-        strut = given.shear_decay_strut * sizes.fc * sizes.width * sizes.d
-        stays = given.shear_decay_ties * ties + axial_strut(section, span, axial_load)
-        s_min = min(0.95, stays / f_y, strut / f_y)
+        strut = sum(side.strut for side in sides) / len(sides)
+        crushed = given.shear_decay_strut * sum(side.crushed for side in sides) / len(sides)
+        s_min = min(0.95, (given.shear_decay_ties * ties + strut) / f_y, crushed / f_y)
     limits = {
         name: (min(s.limits[name][0] for s in sides), max(s.limits[name][1] for s in sides))
         for name in sides[0].limits
@@ -556,8 +558,8 @@ class _Side:
     ----------
     line : dict of str to float
         The backbone, by the names of `Pinching`.
-    ties : float
-        What the ties carry [N].
+    ties, strut, crushed : float
+        What the ties carry, and the strut of the axial load; f'c b d [N].
     fastest : float
         f_cap^2 (1 + d_cap/d_pc) [N2], which bounds how fast the strength may fall.
     limits : dict of str to (float, float)
@@ -566,6 +568,8 @@ class _Side:
 
     line: dict[str, float]
     ties: float
+    strut: float
+    crushed: float
     fastest: float
     limits: dict[str, tuple[float, float]]
 
@@ -580,12 +584,14 @@ def _side(
 ) -> _Side:
     """Return the spring of a length where y > 0 is in tension, with its strength of a span M/V."""
     sizes = shear_sizes(section)
-    if section.shape == "wall":
-        arch = arch_factor(section, span, 0.0, begins=given.shear_wall_arch)
-        by_theory = given.shear_wall_strut * axial_strut(section, span, axial_load)
+    wall = section.shape == "wall"
+    strut = axial_strut(section, span, axial_load, shortest=0.0 if wall else SQUAT)
+    if wall:
+        arch = arch_factor(section, span, 0.0, begins=given.shear_wall_arch, most=4.0)
+        by_theory = given.shear_wall_strut * strut
+        by_theory += shear_strength_mcft(section, span, axial_load, arch=arch)
     else:
-        arch, by_theory = arch_factor(section, span, axial_load), 0.0
-    by_theory += shear_strength_mcft(section, span, axial_load, arch=arch)
+        by_theory = column_shear_strength(section, span, axial_load)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     least = 1e-4 * sizes.fc * sizes.gross_area
     f_y = max(given.shear_strength * by_theory, least)
@@ -611,6 +617,8 @@ def _side(
     return _Side(
         line | {"d_pc": d_pc},
         (_CIRCLE if is_round else 1.0) * by_ties,
+        strut,
+        sizes.fc * sizes.width * sizes.d,
         f_cap**2 * (1.0 + d_cap / d_pc),
         {
             "shear_strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
