@@ -1328,7 +1328,11 @@ def test_a_beam_whose_joints_soften_between_nodes_that_stand_still_falls():
         )
 
     column = rbsdem.section.member(section(0.3, 0.022), 2.8, axial_load=540e3, rigid_end=0.2)
-    beam = rbsdem.section.member(section(0.4, 0.014), 8.0)
+    # A beam that is weak in shear, and stays at its largest force for a while.
+    weak = rbsdem.section.parameters().with_values(
+        isotropic_hardening=0.0, fatigue=0.0, shear_strength=0.77, shear_cap=0.023
+    )
+    beam = rbsdem.section.member(section(0.4, 0.014), 8.0, model_parameters=weak)
     share = [0.5, 1.0, 0.5]
     nodes = [
         FrameNode(f"N-{i + 1}-{j}", load_y=-20e3 * share[i], mass=180e3 / 9.81 * share[i])
@@ -1349,7 +1353,7 @@ def test_a_beam_whose_joints_soften_between_nodes_that_stand_still_falls():
     ends = []
     for method, dt in (("newmark", 0.005), ("newmark", 0.01), ("generalised_alpha", 0.005)):
         with pytest.warns(
-            rbsdem.errors.AccuracyWarning, match="member B-[12]-3 slides or turns away"
+            rbsdem.errors.AccuracyWarning, match="member B-[12]-[23] slides or turns away"
         ):
             run = rbsdem.time_history(
                 frame,

@@ -167,7 +167,7 @@ def test_parts_of_a_wall_are_refused():
 
 
 def test_shear_strength_of_a_wall_by_hand():
-    """V_MCFT with the arch of walls, and the strut of the axial load, whole; times 1.02."""
+    """V_MCFT with the arch of walls, and the strut of the axial load, whole; times 1.06."""
     for height in (0.8, 1.6, 2.4, 5.0):
         spring = rbsdem.section.wall(wall(), height, axial_load=LOAD).joints("shear")[0]
         d, n = wall().effective_depth, LOAD / (40.5e6 * 0.3)
@@ -177,7 +177,7 @@ def test_shear_strength_of_a_wall_by_hand():
         arch = 1 + (min(max(2 * d / height, 1.0), 4.0) - 1) * tied
         strut = LOAD * 2.0 * (0.8 - 0.65 * n) / (2 * height)
         by_theory = rbsdem.section.strength.shear_strength_mcft(wall(), height, LOAD, arch=arch)
-        assert spring.f_y == pytest.approx(1.02 * (by_theory + strut))
+        assert spring.f_y == pytest.approx(1.06 * (by_theory + strut))
 
 
 def cut(section: WallSection, storeys: int, height: float = 4.56, **changes) -> rbsdem.Frame:
@@ -209,7 +209,7 @@ def test_a_squat_wall_that_is_cut_fails_in_shear_at_the_same_force():
     ]
     assert forces == pytest.approx([forces[0]] * 3, rel=1e-5)
     spring = rbsdem.section.wall(wall(), 2.0, axial_load=LOAD).joints("shear")[0]
-    assert spring.f_y < forces[0] < spring.f_cap
+    assert spring.f_y < forces[0] <= spring.f_cap * (1 + 1e-9)
 
 
 def test_joints_stand_where_the_section_changes():
