@@ -25,6 +25,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,7 +35,7 @@ import numpy as np
 from rbsdem import peer
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.errors import AccuracyWarning
-from rbsdem.run.bands import path_force, scatter_of_tests
+from rbsdem.run.bands import path_force
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import (
     arch_factor,
@@ -129,7 +130,7 @@ def path(test: NewTest) -> np.ndarray:
     if test.one_way:
         return np.linspace(0.0, 0.1 * length, 201)
     turns = [0.0, *(side * d for d in DRIFTS for _ in range(CYCLES) for side in (1, -1)), 0.0]
-    ways = [np.linspace(a, b, POINTS + 1)[1:] for a, b in zip(turns, turns[1:], strict=False)]
+    ways = [np.linspace(a, b, POINTS + 1)[1:] for a, b in pairwise(turns)]
     return np.concatenate([[0.0], *ways]) * length / 100
 
 
@@ -148,13 +149,17 @@ def _arch(*hinge: object) -> float:
 
 def _strut(*hinge: object) -> float:
     return shear_strength_mcft(
-        *hinge, arch=arch_factor(*hinge), strut=axial_strut(*hinge)  # type: ignore[arg-type]
+        *hinge,
+        arch=arch_factor(*hinge),
+        strut=axial_strut(*hinge),  # type: ignore[arg-type]
     )
 
 
 def _truss(*hinge: object) -> float:
     return shear_strength_mcft(
-        *hinge, arch=arch_factor(*hinge), ties=truss(hinge[0])  # type: ignore[arg-type]
+        *hinge,
+        arch=arch_factor(*hinge),
+        ties=truss(hinge[0]),  # type: ignore[arg-type]
     )
 
 
@@ -299,9 +304,7 @@ def new_table(rows: list[Row]) -> list[str]:
             and not r.test.lapped
             and r.test.specimen.axial_load_ratio >= 0.199
         ),
-        "rectangular, below 1": lambda r: (
-            r.test.specimen.section == "rectangular" and r.over <= 1
-        ),
+        "rectangular, below 1": lambda r: r.test.specimen.section == "rectangular" and r.over <= 1,
         "all": lambda r: True,
     }
     lines = [

@@ -137,6 +137,7 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
     half = replace(SECTION, width=0.19, depth=0.19)
     with pytest.warns(AccuracyWarning, match=r"depth = 0\.19 m is outside"):
         model = rbsdem.section.column(half, 0.8, axial_load=2e5)
+    with pytest.warns(AccuracyWarning, match=r"depth = 0\.19 m is outside"):
         small = rbsdem.peer.band(model, PATH[:3], scatter=replace(NONE, **both))
     assert small.width == pytest.approx(1.75 * 0.2)
     with pytest.warns(AccuracyWarning, match="there are no ties"):

@@ -36,7 +36,7 @@ RANGE: dict[str, tuple[float, float, float, str]] = {
 }
 """Range of the tests that the layered model was fitted to, in SI; a unit to print them in.
 
-Of nearly all of them: 8 of 285 have a shorter shear span, 3 a smaller and 3 a larger depth, 11 fewer
+Of nearly all of them: 8 of 285 have a shorter shear span, 3 a smaller, 3 a larger depth, 11 fewer
 ties.
 """
 
