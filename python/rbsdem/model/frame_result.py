@@ -508,15 +508,13 @@ class FrameResult(Rows):
                 at = self.summary["snap_time"] if what == "snap" else float(self.time[-1])
                 wholes.append((self.frame.parts.members[member - 1], what, at))
         for name, what, at in wholes:
-            where = {"member": name, "group": "member"}
+            about: dict[str, Any] = {"member": name, "group": "member"}
             if what == "lost" and self.frame.kinds[name].failure_drift is not None:
                 row = min(int(np.searchsorted(self.time, at * (1 - 1e-12))), self.time.size - 1)
                 drift = abs(float(self._chord(self.frame.geometry[name])[row]))
-                where |= {
-                    end: factor * drift
-                    for end, factor in zip(("lower", "upper"), AXIAL_FAILURE_FACTORS, strict=True)
-                }
-            found.append((what, at, where))
+                low, high = AXIAL_FAILURE_FACTORS
+                about |= {"lower": low * drift, "upper": high * drift}
+            found.append((what, at, about))
         rows = np.searchsorted(self.time, [at * (1 - 1e-12) for _, at, _ in found])
         return LimitStates(
             (
