@@ -153,7 +153,7 @@ function showMessages() {
     for (const text of loop.notes) notes.push(named(i) + inUnits(text, system));
   });
   showNotes(left, notes);
-  if (all.length) say(all.map(fault => fault.text).join("; "));
+  if (all.length) say([...new Set(all.map(fault => fault.text))].join("; "));
   else {
     const last = newest.flatMap(loop => loop.states ?? []).map(at => `${nameOfState(at.name)} at ${shown(100 * Math.abs(at.drift), 2)} %`);
     if (!page.dragging && newest[0]?.figures) say(`Largest force ${shown(newest[0].figures.peak_force / unitOf(system, "force")[1])} ${unitOf(system, "force")[0]}. ${last.join(", ")}`);

@@ -30,7 +30,7 @@ const BEAM = [...DRAWN.filter(({ path }) => ["section.width", "section.depth", "
 const LOADS = [
   { path: "frame.dead_load", label: "Dead load on the beams", dimension: "line", step: 1e3 },
   { path: "frame.live_load", label: "Live load on the beams", dimension: "line", step: 1e3 },
-  { path: "frame.live_share", label: "Its part that acts", dimension: "share", step: 0.05 },
+  { path: "frame.live_share", label: "Share of the live load that acts", dimension: "share", step: 0.05 },
   { path: "frame.self_weight", label: "Weight of the members", choices: [[true, "25 kN/m³"], [false, "in the dead load"]] },
   { path: "frame.kinematics", label: "P-Delta", choices: [["pdelta", "on"], ["small", "off"]] },
   { path: "frame.damping", label: "Damping of all modes", dimension: "share", step: 0.01 },
@@ -182,7 +182,7 @@ function showMessages() {
   });
   const notes = [latest?.frame.stopped, ...(latest?.frame.notes ?? [])].filter(Boolean).map(text => inUnits(text, system));
   showNotes(showFaults(get("form"), all), notes);
-  if (all.length) say(all.map(fault => fault.text).join("; "));
+  say([...new Set(all.map(fault => fault.text))].join("; "));
 }
 
 function showResponse() {

@@ -21,6 +21,7 @@ export const isOld = (name, view = page.view) => Boolean(view.stood[name]) && (v
 // An answer that belongs to the loops that stand.
 export const beside = (name, view = page.view) => view.stood[name]?.key === view.stood.loops?.key ? view.stood[name] ?? null : null;
 
+// For readers of screens; the empty text takes back what was said.
 export function say(text) {
   if (get("live").textContent !== text) get("live").textContent = text;
 }
@@ -204,7 +205,7 @@ async function openFile(file) {
   if (file.size > 7e6) { page.note = `${file.name} is too large for a case file.`; page.view.showMessages(); return; }
   const answer = await ask("open", { text: await file.text() });
   if (!answer) return;
-  if (answer.faults) { page.note = answer.faults.map(fault => `${file.name}: ${fault.text}`).join("; "); say(page.note); page.view.showMessages(); return; }
+  if (answer.faults) { page.note = answer.faults.map(fault => `${file.name}: ${fault.text}`).join("; "); page.view.showMessages(); say(page.note); return; }
   load(answer.state, null, answer.note ?? "");
 }
 
