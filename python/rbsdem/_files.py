@@ -89,7 +89,7 @@ GENERATOR = '<meta name="generator" content="rbsdem">'
 
 
 def claim_folder(
-    path: str | os.PathLike[str], names: Iterable[str], *, anew: bool = False
+    path: str | os.PathLike[str], names: Iterable[str], *, anew: bool = False, look: bool = False
 ) -> list[Path]:
     """Return the paths of files that belong together, in a folder that is made for them.
 
@@ -104,6 +104,8 @@ def claim_folder(
         Names of the files.
     anew : bool, optional
         Whether other files of an earlier list are removed.
+    look : bool, optional
+        Whether the folder is only looked at, before a long run that writes it at its end.
 
     Raises
     ------
@@ -123,6 +125,8 @@ def claim_folder(
             f"{strange[0]} is there and is none of the files that rbsdem wrote into this folder; "
             "move it away, or choose another name"
         )
+    if look:
+        return [folder / name for name in wanted]
     folder.mkdir(parents=True, exist_ok=True)
     others = [name for name in earlier if name not in wanted]
     # An interrupted run leaves only what is on the list.

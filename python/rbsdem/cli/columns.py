@@ -135,7 +135,8 @@ def trade(
     """
     model = read_case(case)
     folder = output or case.with_name(f"{case.stem}-trade")
-    *written, picture = claim_folder(folder, ["trade.csv", "physics.csv", "trade.png"])
+    names = ["trade.csv", "physics.csv", "trade.png"]
+    claim_folder(folder, names, look=True)
     loads: dict[str, Any] = dict(model.loads)
     study = compare_methods(
         model.column,
@@ -148,6 +149,7 @@ def trade(
         budget=budget,
         progress=not quiet and sys.stderr.isatty(),
     )
+    *written, picture = claim_folder(folder, names)
     study.to_csv(written[0])
     physics = study.physics or Physics((), "", math.nan, math.nan)
     physics.to_csv(written[1])

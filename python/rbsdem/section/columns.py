@@ -201,6 +201,8 @@ def column(
         mass = _arguments.number(mass, "mass") / halves
     if axial_height is not None:
         axial_height = _arguments.number(axial_height, "axial_height")
+    if shear_span is not None:
+        shear_span = _arguments.number(shear_span, "shear_span", above=0.0, unit="m")
     common = {
         "mass": mass,
         "axial_load": load,
