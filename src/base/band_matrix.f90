@@ -12,16 +12,13 @@
 !> factored here: for a half-width up to 3 the columns that an elimination changes stay in registers. LAPACK's
 !> band routines take several times as long, because they call other routines for vectors of three numbers.
 module rbs_base_band_matrix
-   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band
+   use rbs_base_tolerances, only: no_stiffness, round_off
    implicit none
    private
 
    public :: band_matrix
-
-   !> Added in proportion to the initial stiffness where elimination meets a zero: no more than round-off.
-   real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
 
    !> If one step of refinement changes the solution by more than this share, the system counts as singular.
    real(wp), parameter :: no_answer = 1.0e-3_wp

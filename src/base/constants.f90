@@ -9,9 +9,6 @@ module rbs_base_constants
    !> Standard acceleration of gravity [m/s2].
    real(wp), parameter, public :: standard_gravity = 9.80665_wp
 
-   !> A slope or a pivot below this share of the initial stiffness is the round-off of zero.
-   real(wp), parameter, public :: no_stiffness = 1.0e-12_wp
-
    !> A deformation that is never reached: the end of a line without end.
    real(wp), parameter, public :: unbounded = huge(1.0_wp)
 

@@ -4,13 +4,11 @@
 module rbs_hysteresis_layer_joints
    use rbs_base_constants, only: out_of_bounds
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: round_off
    implicit none
    private
 
    public :: layer_joints, stiffness_sums
-
-   !> Round-off of the motion of a layer, as a share of its terms.
-   real(wp), parameter :: round_off = 16.0_wp*epsilon(1.0_wp)
 
    type :: layer_joints
       !> Number of joints, and of coordinates before theirs

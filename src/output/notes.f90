@@ -75,7 +75,7 @@ contains
       call rotation_note(structure, summary, notes)
       if (summary%remark /= '') call notes%add(trim(summary%remark))
       ! Explicit steps near their limit lose energy as they must; those of frames are implicit.
-      if (size(structure%initial_tangent) == 0 .or. .not. summary%time_step > 0.0_wp) return
+      if (.not. structure%is_implicit .or. .not. summary%time_step > 0.0_wp) return
       if (.not. summary%residual > much*summary%largest) return
       call notes%add('the balance of energy misses '// &
                      to_text(anint(100.0_wp*summary%residual/summary%largest))// &
@@ -101,7 +101,7 @@ contains
          call drift_note(structure, summary%peak_displacement, notes)
          if (notes%count > before) return
       end if
-      if (size(structure%initial_tangent) > 0) return
+      if (structure%is_implicit) return
       if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (structure%kinematics == small) kinematics = 'small'
@@ -128,7 +128,7 @@ contains
       if (.not. abs(displacement) > far*structure%total_height) return
       remedy = "; if it is meant, use kinematics = 'finite'"
       ! Rotations of frames are small.
-      if (size(structure%initial_tangent) > 0) remedy = ''
+      if (structure%is_implicit) remedy = ''
       call notes%add('the top goes beyond half of the height; displacements are in m (16 mm is 0.016), '// &
                      'drifts are parts of the height (2 per cent is 0.02), forces are in N'//remedy)
    end subroutine drift_note

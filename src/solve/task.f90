@@ -10,7 +10,10 @@ module rbs_solve_task
    implicit none
    private
 
-   public :: task_type
+   public :: task_type, many_unknowns
+
+   !> From so many unknowns on a step is long enough to report it.
+   integer, parameter :: many_unknowns = 12
 
    type :: task_type
       !> Recorder of the kept rows, and observer of the progress (null: none)

@@ -19,8 +19,8 @@
 !> Forces f out of equilibrium and a misfit m of the motions are corrected by deformations c with
 !> f + k c = p . s and sum p c = m, so that s = K m + sum f dd/dq.
 module rbs_structure_condensation
-   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: no_stiffness, hardening_of_none, round_off
    implicit none
    private
 
@@ -28,12 +28,6 @@ module rbs_structure_condensation
 
    !> A spring enters the basis if it is softer by this factor than the one that it replaces.
    real(wp), parameter :: softer = 2.0_wp
-
-   !> Share of the initial stiffness by which springs of a mechanism resist forces out of balance.
-   real(wp), parameter :: shared = 1.0e-9_wp
-
-   !> A sum below this share of its terms is round-off.
-   real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
 
    type :: series_tangent
       !> Whether it is known at all, and the springs that it belongs to (parts)
@@ -338,7 +332,7 @@ contains
          if (j <= size(place)) out = x(place(j))
          out = unbalance(out, self%p(1, j)*s(1), self%p(2, j)*s(2), self%p(3, j)*s(3))
          if (self%soft_shared(j) > 0.0_wp) then
-            out = self%soft_shared(j)*(out - sum(self%a(:, j)*flexed))/shared
+            out = self%soft_shared(j)*(out - sum(self%a(:, j)*flexed))/hardening_of_none
          else
             out = self%soft(j)*out
          end if

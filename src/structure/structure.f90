@@ -70,9 +70,14 @@ module rbs_structure_structure
       real(wp) :: height = 0.0_wp, total_height = 0.0_wp
       !> Mass or rotary inertia of each unknown (unknowns) [kg, kg m2]
       real(wp), allocatable :: inertias(:)
-      !> Unknowns that supports keep still (unknowns)
-      logical, allocatable :: is_held(:)
-      logical :: has_held = .false.
+      !> Unknowns that supports keep still, and those that keep still on static paths (unknowns)
+      logical, allocatable :: is_held(:), is_still(:)
+      !> Number of springs that can move on static paths; they are the first ones
+      integer :: moving = 0
+      !> Whether deformations are small differences of the unknowns, whose digits a refinement recovers
+      logical :: loses_digits = .false.
+      !> Whether motions are found by implicit steps alone
+      logical :: is_implicit = .false.
       !> The body, or the part of it that is coupled, that an unknown belongs to (unknowns)
       integer, allocatable :: part(:)
       type(unknown_group), allocatable :: group(:)
@@ -98,8 +103,8 @@ module rbs_structure_structure
       !> Whether a constant axial force does second-order work, from the load or from the weight
       logical :: axially_loaded = .false.
       !> Damping in proportion to the mass [1/s] and to the stiffness of the springs [s], the initial one
-      !> or that of the present line
-      real(wp) :: mass_damping = 0.0_wp, stiffness_damping = 0.0_wp
+      !> or that of the present line; the part of the latter that acts in each spring by itself [s]
+      real(wp) :: mass_damping = 0.0_wp, stiffness_damping = 0.0_wp, spring_damping = 0.0_wp
       logical :: tangent_damping = .false.
       !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
@@ -166,7 +171,9 @@ module rbs_structure_structure
       procedure :: damp
       procedure :: add_damping
       procedure :: size_of_parts
-      procedure :: drop_round_off
+      procedure :: clear_round_off
+      procedure :: is_in_series
+      procedure :: set_shape
       procedure :: work_of_dead_load
       procedure :: spring_of
       procedure :: create_springs
@@ -643,16 +650,37 @@ contains
       work = 0.0_wp
    end subroutine size_of_parts
 
-   !> Take rates that are round-off of larger ones for zero, where deformations are condensed.
-   pure subroutine drop_round_off(self, tangent, dx, dd)
+   !> Take rates that are round-off of larger ones for zero: a spring at rest on a corner of its curve, as
+   !> beside a mechanism, must not be sent either way.
+   pure subroutine clear_round_off(self, tangent, dx, k, dd)
       class(structure_type), intent(in) :: self
       !> See `linearise`
       type(series_tangent), intent(in) :: tangent(:)
-      !> Rates of the unknowns (unknowns)
-      real(wp), intent(in), contiguous :: dx(:)
+      !> Rates of the unknowns (unknowns); stiffness of the springs (springs)
+      real(wp), intent(in), contiguous :: dx(:), k(:)
       !> Of the springs (springs)
       real(wp), intent(inout), contiguous :: dd(:)
-   end subroutine drop_round_off
+   end subroutine clear_round_off
+
+   !> Whether all springs carry the lateral force and their motions add up to that of the top.
+   pure logical function is_in_series(self)
+      class(structure_type), intent(in) :: self
+
+      is_in_series = .false.
+   end function is_in_series
+
+   !> A shape of vibration in the order of the structure, with its sign: the masses move to +x.
+   subroutine set_shape(self, part, found, shape)
+      class(structure_type), intent(in) :: self
+      !> Of `dynamic_parts`
+      integer, intent(in) :: part
+      !> In the order of the part
+      real(wp), intent(in), contiguous :: found(:)
+      !> (unknowns), zero
+      real(wp), intent(inout), contiguous :: shape(:)
+
+      shape = sign(1.0_wp, -self%work_of(horizontal, found))*found
+   end subroutine set_shape
 
    !> Work of a dead load that grows on a static path; there is none.
    pure real(wp) function work_of_dead_load(self, d) result(work)

@@ -1,8 +1,9 @@
 !> Straight paths of a fibre section in rotation and axial load: the branches on which its layers continue,
 !> and the way from event to event.
 module rbs_hysteresis_layered_fibre_path
-   use rbs_base_constants, only: no_stiffness, unbounded
+   use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: no_stiffness
    use rbs_hysteresis_layered_fibre_kernels, only: find_ends_ahead, find_ends_behind
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    implicit none

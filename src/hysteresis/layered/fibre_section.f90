@@ -17,9 +17,10 @@
 !>
 !> A layer that represents several equal ones at one place counts with its weight.
 module rbs_hysteresis_layered_fibre_section
-   use rbs_base_constants, only: no_stiffness, unbounded
+   use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_base_tolerances, only: no_stiffness, round_off
    use rbs_hysteresis_layered_fibre_kernels, only: add_lines
    use rbs_hysteresis_rule, only: rule_memory, rule_slot, memory_slot, copy_memory
    use rbs_hysteresis_segment, only: segment
@@ -33,8 +34,6 @@ module rbs_hysteresis_layered_fibre_section
    real(wp), parameter :: on_the_end = 1.0e-13_wp, no_rate = 1.0e-13_wp
    !> A rate below this is none.
    real(wp), parameter :: least_speed = 1.0e-150_wp
-   !> Where a path comes back to zero, the rest is round-off of the largest deformation so far.
-   real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
    !> Branches without length that one layer may pass at one point.
    integer, parameter :: most_branches = 8
    !> In the arrays of the ends, the number for none.

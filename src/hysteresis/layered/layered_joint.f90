@@ -3,10 +3,11 @@
 !> (`next`). Where the axial load varies, the joint follows a straight path in rotation and axial load from
 !> event to event.
 module rbs_hysteresis_layered_layered_joint
-   use rbs_base_constants, only: no_stiffness, unbounded
+   use rbs_base_constants, only: unbounded
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: no_stiffness
    use rbs_hysteresis_layered_fibre_path, only: choose_branches, go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_rule, only: rule_type, rule_memory, rule_slot

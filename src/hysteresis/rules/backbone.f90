@@ -26,6 +26,7 @@ module rbs_hysteresis_rules_backbone
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: parallel
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -33,9 +34,6 @@ module rbs_hysteresis_rules_backbone
    public :: backbone_side, backbone_parameters
 
    character(len=*), parameter :: as_positive = 'the same on the negative side; without it as on the positive'
-
-   !> Slopes this close to each other are the same.
-   real(wp), parameter :: round_off = 1.0e-9_wp
 
    type :: backbone_parameters
       !> Cracking point [m], [N]; zero: uncracked from the start, elastic up to yield
@@ -307,7 +305,7 @@ contains
          call require('d_cap', self%d_cap, 'must be above', 'd_y', self%d_y, &
                       'the force rises from yield to the cap')
       else if ((self%f_cap - self%f_y)*(self%d_y - self%d_c) > &
-               (self%f_y - self%f_c)*(self%d_cap - self%d_y)*(1.0_wp + round_off)) then
+               (self%f_y - self%f_c)*(self%d_cap - self%d_y)*(1.0_wp + parallel)) then
          call messages%add(name//': f_cap'//suffix//' = '//to_text(self%f_cap)//' is too far above f_y'// &
                            suffix//' = '//to_text(self%f_y)//' (the slope to the cap must not be above '// &
                            'that to yield: yielding softens)')

@@ -19,6 +19,7 @@ module rbs_hysteresis_rules_capped
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: no_force
    use rbs_hysteresis_rules_capped_lines, only: capped_part, capped_memory, capped_spring, capped_state, &
                                                 deteriorate, find_turns, gap, goal_from, no_turn, &
                                                 on_backbone, outermost_rest, reloading, spent_at, &
@@ -30,9 +31,6 @@ module rbs_hysteresis_rules_capped
    private
 
    public :: start_part, next_branch
-
-   !> Below this share of the yield force a reversal counts as one at zero force.
-   real(wp), parameter :: no_force = 1.0e-12_wp
 
 contains
 

@@ -5,6 +5,7 @@ module rbs_hysteresis_rules_capped_lines
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_base_tolerances, only: parallel
    use rbs_hysteresis_rules_backbone, only: backbone_side, backbone_parameters
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
@@ -18,9 +19,6 @@ module rbs_hysteresis_rules_capped_lines
 
    !> Branches
    integer, parameter, public :: virgin = 0, on_backbone = 1, unloading = 2, reloading = 3, gap = 4
-
-   !> Lines whose slopes are this close to each other do not meet.
-   real(wp), parameter :: parallel = 1.0e-9_wp
 
    !> More than there can be turns; as a real number it is exact.
    integer(int64), parameter :: no_turn = 2_int64**53

@@ -5,6 +5,7 @@ module rbs_hysteresis_rules_open_turns
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_base_tolerances, only: parallel
    implicit none
    private
 
@@ -13,9 +14,6 @@ module rbs_hysteresis_rules_open_turns
    !> Most turns that are remembered; beyond that the older half is forgotten, so that memory is bounded in a
    !> vibration whose amplitude decreases for ever.
    integer, parameter :: most_turns = 4096
-
-   !> Lines whose slopes are this close to each other do not meet.
-   real(wp), parameter :: parallel = 1.0e-9_wp
 
    !> How far the start of a line moves inward over the way of the other side, while its turn fades. With the
    !> start the line becomes flatter, until it is the one that reloading follows without the turn.

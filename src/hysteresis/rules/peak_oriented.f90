@@ -22,7 +22,7 @@ module rbs_hysteresis_rules_peak_oriented
    character(len=*), parameter :: range_of_source = '(the range of its source)'
 
    !> Capacities are divided by the energy at yield and multiplied by it.
-   real(wp), parameter :: round_off = 1.0e-9_wp
+   real(wp), parameter :: same_capacity = 1.0e-9_wp
 
    type, extends(rule_type) :: peak_oriented_rule
       !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the
@@ -166,7 +166,7 @@ contains
          real(wp) :: least, unit
 
          least = max(fastest(self%part(1)%given(1)), fastest(self%part(1)%given(-1)))/self%initial_stiffness
-         if (.not. capacity > 0.0_wp .or. capacity >= least*(1.0_wp - round_off)) return
+         if (.not. capacity > 0.0_wp .or. capacity >= least*(1.0_wp - same_capacity)) return
          unit = energy_of(self%part(1))
          call messages%add(name//': '//key//' = '//to_text(capacity/unit)//' must be 0 (it is off) '// &
                            'or at least f_cap**2 (1 + d_cap/d_pc)/(k f_y d_y) = '//to_text(least/unit)// &

@@ -8,13 +8,14 @@
 !> deformation inside the reach may reduce the strength through the factor w (wear).
 module rbs_hysteresis_rules_steel
    use rbs_base_check, only: check_order, is_given
-   use rbs_base_constants, only: no_stiffness, unbounded, unset
+   use rbs_base_constants, only: unbounded, unset
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: above_zero, not_negative, share_below_one, force, stiffness, deformation
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: no_stiffness
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none

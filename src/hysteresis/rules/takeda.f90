@@ -21,6 +21,7 @@ module rbs_hysteresis_rules_takeda
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded, unset
+   use rbs_base_tolerances, only: no_force, parallel
    use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
@@ -35,16 +36,9 @@ module rbs_hysteresis_rules_takeda
    !> Stiffness that B1 multiplies: the uncracked or the outer unloading one; none is the third choice.
    integer, parameter :: of_uncracked = 1, of_outer = 2
 
-   !> Below this share of the yield force a reversal counts as one at zero force.
-   real(wp), parameter :: no_force = 1.0e-12_wp
-
    !> Reloading that turns this close to the peak of the backbone, relative to it, turns there: round-off does
    !> not decide between outer and inner unloading where a hinge in series yields at the same moment again.
    real(wp), parameter :: same_place = 1.0e-11_wp
-
-   !> A branch this close to the slope of the yielded backbone does not meet it. K_r is so close only at
-   !> unrealistic ductilities.
-   real(wp), parameter :: parallel = 1.0e-9_wp
 
    !> Where a spring is on its rule.
    type :: takeda_state

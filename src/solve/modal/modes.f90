@@ -105,7 +105,7 @@ contains
          end if
       end if
       ! These also refuse a structure that buckles under its axial load alone.
-      if (size(structure%initial_tangent) > 0) then
+      if (structure%is_implicit) then
          call check_at_rest(structure, error)
       else
          call stability_limit(structure, modes%stable_step, error)
@@ -142,7 +142,7 @@ contains
       do i = 1, wanted
          b = minloc([(squares(min(next(b), wanted), b), b=1, size(search))], mask=left, dim=1)
          modes%omega(i) = sqrt(squares(next(b), b))
-         call set_shape(structure, b == 2, shapes(:, next(b), b), modes%shapes(:, i))
+         call structure%set_shape(b, shapes(:, next(b), b), modes%shapes(:, i))
          next(b) = next(b) + 1
          left(b) = next(b) <= min(wanted, search(b)%dynamic%modes)
          if (left(b) .and. i < wanted) then
@@ -150,30 +150,6 @@ contains
          end if
       end do
    end subroutine find_modes
-
-   !> A shape in the order of the structure, with its sign: the top moves to +x, or up if it moves along the
-   !> column only; the masses of a frame move to +x.
-   subroutine set_shape(structure, opens, found, shape)
-      class(structure_type), intent(in) :: structure
-      !> Whether it is one of openings
-      logical, intent(in) :: opens
-      real(wp), intent(in), contiguous :: found(:)
-      real(wp), intent(inout), contiguous :: shape(:)
-      real(wp) :: along
-
-      if (size(structure%initial_tangent) > 0) then
-         shape = found
-         along = -structure%work_of(horizontal, shape)
-      else if (opens) then
-         shape = unpack(found(::2), structure%location%kind == axial, shape)
-         along = sum(shape)
-      else
-         shape = unpack(found(::2), structure%location%kind == shear, shape)
-         shape = unpack(found(2::2), structure%location%kind == flexure, shape)
-         along = structure%top_displacement(shape)
-      end if
-      shape = sign(1.0_wp, along)*shape
-   end subroutine set_shape
 
    !> Condition of the modes under axial load.
    subroutine set_condition(structure, dynamic, modes)

@@ -17,7 +17,7 @@ module rbs_solve_static_curve
    real(wp), parameter :: most_rotation = 0.05_wp, most_bend = 0.1_wp
 
    !> Bends this small are round-off [rad].
-   real(wp), parameter :: round_off = 1.0e-12_wp
+   real(wp), parameter :: no_bend = 1.0e-12_wp
 
    !> A rate below this share of that of the top is round-off, and a difference of rates below this share of
    !> their own size is zero.
@@ -112,7 +112,7 @@ contains
          change = change - self%length*self%near%rate
          is_gentle = rotation <= 2.0_wp*most_rotation .and. &
                      max(structure%largest_rotation(change), maxval(abs(change), mask=slips)/height) &
-                     <= most_bend*step + round_off
+                     <= most_bend*step + no_bend
       end associate
    end function is_gentle
 

@@ -13,12 +13,13 @@ module rbs_solve_static_curved
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: round_off_of_sums
    use rbs_hysteresis_interaction_joints, only: list_lines, put_on_plane
    use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_rotation
    use rbs_solve_static_curved_search, only: curve_search, find_event, find_point, find_turn, find_works, &
-                                             layer_of, move_to, no_progress, round_off, work_of_joint
+                                             layer_of, move_to, no_progress, work_of_joint
    use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, &
                                     serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
@@ -232,7 +233,7 @@ contains
          associate (trial => self%trial, current => self%current, spring => self%line)
             ! An end that is met at the goal, but for round-off, is met there: beyond it, the path
             ! would turn back.
-            if (abs(self%goal - trial%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
+            if (abs(self%goal - trial%t) <= on_the_end*abs(self%goal) + round_off_of_sums*self%extent) then
                trial%t = self%goal
             end if
             self%control = self%equilibrium%driven(1) + self%equilibrium%driven(2)*trial%t

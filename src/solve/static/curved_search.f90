@@ -2,6 +2,7 @@
 !> where a motion turns back; and the works between two points.
 module rbs_solve_static_curved_search
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: round_off_of_sums
    use rbs_hysteresis_interaction_joints, only: moment_on_plane, place_lines
    use rbs_solve_line_search, only: false_position
    use rbs_solve_static_curve, only: clean, curve_type, same_rate
@@ -12,10 +13,7 @@ module rbs_solve_static_curved_search
    private
 
    public :: curve_search, find_event, find_point, find_turn, find_works
-   public :: layer_of, move_to, no_progress, round_off, work_of_joint
-
-   !> Round-off of a displacement or force, as a share of the largest.
-   real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
+   public :: layer_of, move_to, no_progress, work_of_joint
 
    !> Newton's method has converged if a change is below this share of the largest deformation of its kind:
    !> the next one would be its square. Where round-off ends the progress before, that must be below the
@@ -228,7 +226,7 @@ contains
          residual = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
          done = .not. strict .or. abs(residual) <= max(self%most_work, turnover) &
                 *largest_residual(merge(1, 2, self%structure%kinematics == finite)) &
-                + round_off*(abs(trial%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
+                + round_off_of_sums*(abs(trial%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
       end associate
    end subroutine find_works
 

@@ -9,16 +9,15 @@
 !> with F' = 1 or u' = 1. K is a band, bordered by p and c where the displacement is driven. The pattern is
 !> that of the lateral load, or the dead load of a frame, which grows from 0 to 1. Deformations that are small
 !> differences of unknowns lose digits; the residual is taken in the deformations and solved for once more.
-!> Joints of a chain that nothing couples have a diagonal K and need no factor. A few bodies are solved in
-!> their deformations, with full matrices, which loses no digits.
+!> Joints of a chain that nothing couples have a diagonal K and need no factor.
 module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
-   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_base_tolerances, only: no_stiffness, hardening_of_none
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_condensation, only: series_tangent
-   use rbs_structure_spring_location, only: flexure, axial
+   use rbs_structure_spring_location, only: flexure
    use rbs_structure_structure, only: structure_type, lateral, signals
    implicit none
    private
@@ -35,25 +34,12 @@ module rbs_solve_static_equilibrium
    !> part is free to move.
    real(wp), parameter :: no_more = 1.0_wp
 
-   !> Hardening by which springs without stiffness share a motion, as a share of their initial stiffness.
-   real(wp), parameter :: shared = 1.0e-9_wp
-
    !> Share of a change that a refinement may add for the next one to be needless, and most refinements.
    real(wp), parameter :: few_digits = 1.0e-8_wp
    integer, parameter :: refinements = 20
 
    !> A displacement, in shares of the height, or a rotation that is no more than round-off.
    real(wp), parameter :: of_round_off = 1.0e-12_wp
-
-   !> Most springs of a chain for full matrices, and the length of its equations: the springs, the force and
-   !> two right-hand sides, and one number more, as processors take two or four at a time.
-   integer, parameter :: most_dense = 4, row_length = most_dense + 4
-
-   !> Force rate of a spring at rest, as a share of that of a spring without stiffness on its initial line.
-   real(wp), parameter :: at_rest = 8.0_wp*epsilon(1.0_wp)
-
-   !> A pivot that is round-off of numbers of the order of one.
-   real(wp), parameter :: no_pivot = 1.0e-13_wp
 
    type :: equilibrium_type
       !> Whether the dead load of a frame grows with the force, from 0 to 1, in place of the lateral one
@@ -76,19 +62,12 @@ module rbs_solve_static_equilibrium
       !> The largest force that was out of equilibrium before the correction, moments over the height [N]
       real(wp) :: unbalance = 0.0_wp
       class(structure_type), pointer, private :: structure => null()
-      !> Whether the unknowns are coupled; if not, K is diagonal in the deformations. Whether deformations
-      !> follow from the unknowns alone, so that lost digits can be recovered
-      logical, private :: coupled = .false., refines = .false.
-      !> Whether the springs are few; then their geometric stiffness, the equations without stiffness, and
-      !> their scales: one over the root of the initial stiffness, and the largest arm
-      logical, private :: is_dense = .false.
-      real(wp), private :: geometric(most_dense, most_dense) = 0.0_wp, &
-           equation(row_length, most_dense + 1) = 0.0_wp
-      real(wp), private :: scale(most_dense) = 0.0_wp, most = 1.0_wp
+      !> Whether nothing couples the springs, so that K is diagonal in the deformations
+      logical, private :: in_series = .false.
       type(band_matrix), private :: matrix
       !> Pivots of the initial stiffness (unknowns)
       real(wp), allocatable, private :: pivot(:)
-      !> Unknowns that supports or axial springs keep still (unknowns)
+      !> Unknowns that stay where they are (unknowns)
       logical, allocatable, private :: still(:)
       logical, private :: has_still = .false.
       !> Axial forces that do second-order work
@@ -104,7 +83,7 @@ module rbs_solve_static_equilibrium
       real(wp), allocatable, private :: change(:, :), moved(:, :)
       !> Forces of the springs, flexibilities (springs); changes of the position that bring the inside of
       !> elements to equilibrium, and those by the load per unit (coordinates, or none)
-      real(wp), allocatable, private :: f(:), flexible(:), inner(:), inner_load(:), more(:)
+      real(wp), allocatable, private :: f(:), flexible(:), inner(:), inner_load(:), inner_more(:), more(:)
    contains
       procedure :: create
       procedure :: follow
@@ -121,20 +100,14 @@ contains
       logical, intent(in) :: of_dead_load
       type(band_matrix) :: initial
       real(wp) :: no_load(signals)
-      integer :: inner, springs, m, i
+      integer :: springs, m, i
 
       self%structure => structure
       self%of_dead_load = of_dead_load
       m = structure%unknowns
       springs = size(structure%location)
-      self%moving = springs
-      self%refines = size(structure%initial_tangent) == 0
-      self%still = structure%is_held
-      if (self%refines) then
-         ! Axial springs of a chain keep still, and with them the last unknowns.
-         self%moving = count(structure%location%kind /= axial)
-         self%still(self%moving + 1:) = .true.
-      end if
+      self%moving = structure%moving
+      self%still = structure%is_still
       self%has_still = any(self%still)
       allocate (self%reach(m), source=1.0_wp)
       do i = 1, size(structure%group)
@@ -146,18 +119,18 @@ contains
          end associate
       end do
       if (allocated(structure%reach)) self%reach(:) = structure%reach
-      self%coupled = structure%axially_loaded .or. structure%has_held .or. .not. self%refines
-      inner = merge(0, structure%coordinates, self%refines)
+      self%in_series = structure%is_in_series()
       self%tangent = structure%initial_tangent
       allocate (self%pattern(m), self%residual(m), self%load(m), &
                 self%change(m, 2), self%moved(structure%coordinates, 2), self%f(springs), &
-                self%flexible(springs), self%inner(inner), self%inner_load(inner), &
+                self%flexible(springs), self%inner(structure%coordinates), &
+                self%inner_load(structure%coordinates), self%inner_more(structure%coordinates), &
                 self%more(structure%coordinates), self%correction(structure%coordinates), source=0.0_wp)
       allocate (self%axial(merge(structure%axial_count, 0, structure%axially_loaded)))
       no_load = 0.0_wp
       if (structure%axially_loaded) call structure%axial_forces(no_load, self%axial)
       if (.not. of_dead_load) self%pattern = structure%pattern(lateral)%force
-      if (.not. self%coupled) return
+      if (self%in_series) return
       call initial%create(m, structure%half_width)
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, initial%band)
       call self%matrix%create(m, structure%half_width, initial%band(1, :))
@@ -165,41 +138,7 @@ contains
       call hold_still(self)
       call self%matrix%factor()
       self%pivot = 1.0_wp/self%matrix%triangle(1, :)
-      self%is_dense = self%refines .and. .not. self%has_still .and. springs <= most_dense
-      if (self%is_dense) call create_dense(self)
    end subroutine create
-
-   !> The equations of a few springs from the second-order forces by a unit of each deformation.
-   subroutine create_dense(self)
-      class(equilibrium_type), intent(inout) :: self
-      real(wp) :: no_load(signals), moved(self%moving, self%moving)
-      integer :: i, j
-
-      associate (structure => self%structure, m => self%moving, scale => self%scale, row => self%equation)
-         no_load = 0.0_wp
-         do j = 1, m
-            self%more = 0.0_wp
-            self%more(j) = 1.0_wp
-            call structure%unknown_rates(self%more, moved(:, j))
-         end do
-         do j = 1, m
-            self%more = 0.0_wp
-            self%more(j) = 1.0_wp
-            self%f = 0.0_wp
-            call structure%forces(self%more, no_load, self%axial, self%tangent, self%f, self%residual, &
-                                  self%inner)
-            self%geometric(j, :m) = -matmul(self%residual, moved)
-         end do
-         scale(:m) = 1.0_wp/sqrt(structure%initial_stiffness)
-         self%most = maxval(structure%arm*scale(:m))
-         do i = 1, m
-            row(:m, i) = self%geometric(:m, i)*scale(:m)*scale(i)
-            row(m + 1, i) = -structure%arm(i)*scale(i)/self%most
-            row(i, m + 1) = -row(m + 1, i)
-         end do
-         row(m + 2, m + 1) = 1.0_wp/self%most
-      end associate
-   end subroutine create_dense
 
    !> Hold the unknowns that do not move.
    subroutine hold_still(self)
@@ -228,12 +167,7 @@ contains
       self%lost_digits = .false.
       self%is_stable = all(springs%k(:self%moving) >= 0.0_wp) .and. .not. self%structure%axially_loaded
       residual = displacement - self%structure%top_displacement(springs%d)
-      if (self%is_dense .and. .not. by_force) then
-         call self%find_unbalance(springs, force)
-         call follow_dense(self, springs%k, residual, rate, found)
-         if (found) return
-      end if
-      if (self%coupled) then
+      if (.not. self%in_series) then
          call follow_band(self, springs, by_force, residual, force, rate, found)
          return
       end if
@@ -256,101 +190,7 @@ contains
       end associate
    end subroutine follow
 
-   !> A few springs, driven by the displacement. Not found where the equations have next to no pivot.
-   subroutine follow_dense(self, k, residual, rate, found)
-      class(equilibrium_type), intent(inout) :: self
-      real(wp), intent(in), contiguous :: k(:)
-      !> Of the displacement [m]
-      real(wp), intent(in) :: residual
-      real(wp), intent(inout), contiguous :: rate(:)
-      logical, intent(out) :: found
-      real(wp) :: row(row_length, most_dense + 1), largest, correction
-      integer :: i
-
-      associate (m => self%moving, scale => self%scale)
-         row = self%equation
-         do i = 1, m
-            row(i, i) = row(i, i) + k(i)*scale(i)**2
-            row(m + 3, i) = self%f(i)*scale(i)
-         end do
-         row(m + 3, m + 1) = residual/self%most
-         call solve_rows(m + 1, row, found)
-         if (.not. found) return
-         largest = 0.0_wp
-         correction = 0.0_wp
-         do i = 1, m
-            rate(i) = row(m + 2, i)*scale(i)
-            self%correction(i) = row(m + 3, i)*scale(i)
-            largest = max(largest, abs(rate(i)))
-            correction = max(correction, abs(self%correction(i)))
-         end do
-         call clear_at_rest(self%structure, k(:m), rate(:m))
-         found = largest < without_end
-         self%force_rate = row(m + 2, m + 1)/self%most
-         self%force_correction = row(m + 3, m + 1)/self%most
-         if (correction > no_more*self%structure%total_height) then
-            self%correction = 0.0_wp
-            self%force_correction = 0.0_wp
-         end if
-         self%displacement_rate = 1.0_wp
-         self%dead_load_work_rate = 0.0_wp
-      end associate
-   end subroutine follow_dense
-
-   !> Where a spring without stiffness moves alone, the force rates of all others are round-off: a spring on a
-   !> corner of its curve must not be sent either way by it.
-   pure subroutine clear_at_rest(structure, k, rate)
-      class(structure_type), intent(in) :: structure
-      !> Stiffness and rate of each spring that can move
-      real(wp), intent(in) :: k(:)
-      real(wp), intent(inout) :: rate(:)
-      real(wp) :: lever(size(k)), largest
-
-      if (all(abs(k) > 0.0_wp)) return
-      associate (initial => structure%initial_stiffness(:size(k)))
-         lever = 1.0_wp
-         where (structure%location(:size(k))%kind == flexure) lever = structure%total_height
-         largest = maxval(initial*abs(rate)/lever, mask=.not. abs(k) > 0.0_wp)
-         where (abs(k) > 0.0_wp .and. abs(k*rate)/lever < at_rest*largest) rate = 0.0_wp
-      end associate
-   end subroutine clear_at_rest
-
-   !> Solve a few equations of one length by elimination with pivots.
-   pure subroutine solve_rows(n, row, regular)
-      integer, intent(in) :: n
-      !> Each column an equation: its coefficients (n), and right-hand sides, which the solutions replace
-      real(wp), intent(inout) :: row(row_length, most_dense + 1)
-      logical, intent(out) :: regular
-      real(wp) :: pivot(row_length), share
-      integer :: i, j, p
-
-      regular = .false.
-      do j = 1, n
-         p = j
-         do i = j + 1, n
-            if (abs(row(j, i)) > abs(row(j, p))) p = i
-         end do
-         if (.not. abs(row(j, p)) > no_pivot) return
-         pivot = row(:, p)
-         row(:, p) = row(:, j)
-         row(:, j) = pivot
-         share = 1.0_wp/pivot(j)
-         do i = j + 1, n
-            row(:, i) = row(:, i) - (row(j, i)*share)*pivot
-         end do
-      end do
-      do j = n, 1, -1
-         row(n + 1, j) = row(n + 1, j)/row(j, j)
-         row(n + 2, j) = row(n + 2, j)/row(j, j)
-         do i = 1, j - 1
-            row(n + 1, i) = row(n + 1, i) - row(j, i)*row(n + 1, j)
-            row(n + 2, i) = row(n + 2, i) - row(j, i)*row(n + 2, j)
-         end do
-      end do
-      regular = .true.
-   end subroutine solve_rows
-
-   !> The same with the band.
+   !> Rates and corrections by the band.
    subroutine follow_band(self, springs, by_force, residual, force, rate, found)
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -360,22 +200,20 @@ contains
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: y(2)
-      logical :: settled, shares
+      logical :: settled, shares, refines
 
       associate (structure => self%structure)
-         call find_rates(springs%k, .false., found)
+         found = .false.
+         ! Of joints without stiffness in series the band knows only the sum.
+         if (by_force .or. .not. structure%loses_digits) call find_rates(springs%k, .false., found)
          ! A node between springs without stiffness is free to turn.
-         if (.not. found .and. self%unstable == 0 .and. .not. by_force .and. .not. self%refines) then
+         if (.not. found .and. self%unstable == 0 .and. .not. by_force) then
             call find_rates(with_hardening(springs%k, structure%initial_stiffness), .true., found)
          end if
          if (.not. found) return
          rate = self%moved(:, 1)
          call springs%joints%open_layers(rate)
-         if (self%refines) then
-            call clear_at_rest(structure, springs%k(:self%moving), rate(:self%moving))
-         else
-            call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
-         end if
+         call structure%clear_round_off(self%tangent, self%change(:, 1), springs%k, rate)
          self%force_rate = y(1)
          self%displacement_rate = 1.0_wp
          if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
@@ -388,8 +226,7 @@ contains
             y(2) = 0.0_wp
          end if
          self%force_correction = y(2)
-         self%correction(:) = self%moved(:, 2)
-         if (.not. self%refines) self%correction(:) = self%correction + self%inner
+         self%correction(:) = self%moved(:, 2) + self%inner
          call springs%joints%align(springs%d, self%correction)
       end associate
 
@@ -403,7 +240,7 @@ contains
          logical, intent(out) :: found
 
          call self%structure%linearise(k, self%tangent, self%unstable, shares)
-         shares = shares .or. is_hardened
+         refines = is_hardened .or. self%structure%loses_digits
          found = self%unstable == 0 .or. self%may_snap_back
          if (.not. found) return
          call find_residual(self, springs, force)
@@ -413,7 +250,9 @@ contains
          ! A part that gives way beside the top moves without end while the top does not.
          if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
          ! Where hinges make a mechanism of a member between nodes at rest, its own load moves it.
-         if (self%of_dead_load .and. shares) found = found .and. maxval(abs(self%inner_load)) < falls
+         if (self%of_dead_load .and. (shares .or. is_hardened)) then
+            found = found .and. maxval(abs(self%inner_load)) < falls
+         end if
       end subroutine find_rates
 
       !> Changes per unit of the driven quantity (1), or by the residual (2), and the force of these changes.
@@ -422,7 +261,7 @@ contains
          !> Where it is driven [m]
          real(wp), intent(in) :: displacement
          logical, intent(out) :: regular
-         real(wp) :: signal(signals), more, inner(size(self%inner))
+         real(wp) :: signal(signals), more
          integer :: again
 
          y(j) = merge(1.0_wp, 0.0_wp, by_force .and. j == 1)
@@ -433,16 +272,15 @@ contains
          y(j) = y(j) + more
          call self%structure%spring_rates(self%tangent, self%change(:, 1), self%moved(:, j))
          if (self%of_dead_load) self%moved(:, j) = self%moved(:, j) + y(j)*self%inner_load
-         if (.not. self%refines .and. (j == 2 .or. .not. shares)) return
+         if (.not. refines .or. (j == 2 .and. .not. self%structure%loses_digits)) return
          ! A correction that is round-off itself needs no digits of its own.
          if (j == 2 .and. maxval(abs(self%change(:, 1))) <= of_round_off*self%structure%total_height) return
          signal = 0.0_wp
-         inner = 0.0_wp
          do again = 1, refinements
             if (.not. self%of_dead_load) signal(lateral) = y(j)
             call springs%find_resistance(springs%k, self%moved(:, j), self%f)
             call self%structure%forces(self%moved(:, j), signal, self%axial, self%tangent, self%f, &
-                                       self%load, inner, merge(y(j), 0.0_wp, self%of_dead_load))
+                                       self%load, self%inner_more, merge(y(j), 0.0_wp, self%of_dead_load))
             if (j == 2) self%load(:) = self%load + self%residual
             if (self%has_still) where (self%still) self%load = 0.0_wp
             call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, &
@@ -450,16 +288,16 @@ contains
             if (.not. regular) exit
             y(j) = y(j) + more
             call self%structure%spring_rates(self%tangent, self%change(:, 2), self%more)
-            if (.not. self%refines) self%more = self%more + inner
+            self%more = self%more + self%inner_more
             if (self%of_dead_load) self%more = self%more + more*self%inner_load
             self%moved(:, j) = self%moved(:, j) + self%more
             self%change(:, 1) = self%change(:, 1) + self%change(:, 2)
             ! One more would add about the square of this share.
             if (maxval(abs(self%change(:, 2))) <= few_digits*maxval(abs(self%change(:, 1)))) return
          end do
-         ! In a frame round-off is left to correct, or the common motion of parts that are free to move.
-         self%lost_digits = regular .and. self%refines .and. j == 1
-         regular = .not. self%refines
+         ! Else round-off is left to correct, or the common motion of parts that are free to move.
+         self%lost_digits = regular .and. self%structure%loses_digits .and. j == 1
+         regular = .not. self%structure%loses_digits
       end subroutine solve
 
       subroutine solve_once(i, displacement, more, regular)
@@ -489,9 +327,7 @@ contains
 
       associate (structure => self%structure, matrix => self%matrix)
          matrix%band = 0.0_wp
-         self%f = k
-         if (self%refines .and. .not. by_force) self%f = with_hardening(k, structure%initial_stiffness)
-         call structure%add_stiffness(self%f, self%tangent, matrix%band)
+         call structure%add_stiffness(k, self%tangent, matrix%band)
          if (structure%axially_loaded) call structure%add_geometric(self%axial, matrix%band)
          call hold_still(self)
          call matrix%factor()
@@ -511,7 +347,7 @@ contains
    elemental real(wp) function with_hardening(k, initial)
       real(wp), intent(in) :: k, initial
 
-      with_hardening = merge(k, shared*initial, abs(k) > no_stiffness*initial)
+      with_hardening = merge(k, hardening_of_none*initial, abs(k) > no_stiffness*initial)
    end function with_hardening
 
    !> Work of the load per unit of it and of the driven quantity.
@@ -532,24 +368,18 @@ contains
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: force
-      real(wp) :: d(most_dense)
       integer :: i
 
-      if (self%coupled .and. .not. self%is_dense) then
+      if (.not. self%in_series) then
          ! Where an element snaps back its last tangent serves.
          call self%structure%linearise(springs%k, self%tangent, self%unstable)
          call find_residual(self, springs, force)
          return
       end if
       self%unbalance = 0.0_wp
-      if (self%is_dense) then
-         d = 0.0_wp
-         d(:self%moving) = springs%d(:self%moving)
-      end if
       associate (structure => self%structure)
          do i = 1, self%moving
             self%f(i) = structure%arm(i)*force - (springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i)))
-            if (self%is_dense) self%f(i) = self%f(i) - sum(self%geometric(:, i)*d)
             self%unbalance = max(self%unbalance, abs(self%f(i))/merge(structure%total_height, 1.0_wp, &
                                                                       structure%location(i)%kind == flexure))
          end do

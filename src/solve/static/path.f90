@@ -11,9 +11,10 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: no_force
    use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_task, only: task_type
+   use rbs_solve_task, only: task_type, many_unknowns
    use rbs_structure_channel, only: energy_type, response_type
    use rbs_structure_spring_location, only: spring_name, axial, flexure
    use rbs_structure_structure, only: structure_type, finite
@@ -58,9 +59,6 @@ module rbs_solve_static_path
 
    !> Displacement of the top by round-off alone, as a share of the contributions of all springs.
    real(wp), parameter :: same_displacement = 2.0e-13_wp
-
-   !> A force is reached if less than this share of it is missing.
-   real(wp), parameter :: no_force = 1.0e-12_wp
 
    !> The state of a path and its rates.
    type, abstract :: static_path
@@ -331,7 +329,7 @@ contains
          if (allocated(error) .or. ends) return
          ! The way between two points of a frame is long.
          if (associated(task%progress)) then
-            if (mod(i, 1024) == 0 .or. size(self%structure%initial_tangent) > 0) then
+            if (mod(i, 1024) == 0 .or. self%structure%unknowns >= many_unknowns) then
                call task%progress%update(real(i, wp)/size(target))
             end if
          end if

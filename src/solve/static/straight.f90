@@ -24,7 +24,7 @@ module rbs_solve_static_straight
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
 
    !> A correction of equilibrium below this share of a deformation is round-off.
-   real(wp), parameter :: round_off = 1.0e-10_wp
+   real(wp), parameter :: small_correction = 1.0e-10_wp
 
    !> Lines without progress toward a target after which a path is given up: some, and some for each spring.
    integer, parameter :: most_idle = 1000, most_idle_per_spring = 10
@@ -262,7 +262,7 @@ contains
       integer :: i
 
       do i = 1, n
-         if (abs(correction(i)) > round_off*abs(d(i))) then
+         if (abs(correction(i)) > small_correction*abs(d(i))) then
             q(i) = min(max(q(i), lower(i)), upper(i))
          else
             if (.not. rate(i) > 0.0_wp) q(i) = max(q(i), lower(i))

@@ -184,10 +184,10 @@ contains
          if (self%converged .and. self%ambiguous) call settle()
          if (self%converged) call self%check_runaway(state)
          if (.not. self%marked) return
-         associate (condensed => size(state%motion%structure%initial_tangent) > 0)
-            if (condensed) call snap_unless_smooth(self, state)
-            self%weighed = condensed
-         end associate
+         if (size(self%step%now%tangent) > 0) then
+            call snap_unless_smooth(self, state)
+            self%weighed = .true.
+         end if
          if (.not. self%converged) call state%springs%restore()
          call state%springs%forget_mark()
       end subroutine solve_step
@@ -369,13 +369,11 @@ contains
          if (motion%damped) then
             self%mean(:) = 0.5_wp*(state%v + self%step%w1)
             self%of_damping = h*motion%damping_power(state%springs, self%step%q1, self%mean)
-            if (size(motion%structure%initial_tangent) > 0) then
-               ! Elements damp as wholes; the residual is not needed any more.
-               call motion%structure%unknown_rates(self%mean, self%dx)
-               self%step%r = 0.0_wp
-               call motion%structure%damp(self%dx, self%step%damping_tangent, self%step%r)
-               self%of_damping = self%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
-            end if
+            ! Elements damp as wholes; the residual is not needed any more.
+            call motion%structure%unknown_rates(self%mean, self%dx)
+            self%step%r = 0.0_wp
+            call motion%structure%damp(self%dx, self%step%damping_tangent, self%step%r)
+            self%of_damping = self%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
          end if
       end associate
    end subroutine find_works

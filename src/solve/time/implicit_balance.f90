@@ -11,9 +11,9 @@
 module rbs_solve_time_implicit_balance
    use rbs_base_arrays, only: swap
    use rbs_base_band_matrix, only: band_matrix
-   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_base_tolerances, only: no_stiffness, round_off_of_sums
    use rbs_solve_time_state, only: state_type
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_spring_location, only: flexure
@@ -22,9 +22,6 @@ module rbs_solve_time_implicit_balance
    private
 
    public :: family_type, step_balance, step_tangent
-
-   !> Round-off of the terms of a sum, as a share of the largest.
-   real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
 
    !> Parameters of the method; those of Newmark's average acceleration.
    type :: family_type
@@ -45,8 +42,8 @@ module rbs_solve_time_implicit_balance
       logical, private :: known = .false.
       !> Forces of the present trial
       type(motion_result) :: now
-      !> Stiffness of the springs that the tangents of the elements belong to (springs), its version, and the
-      !> resistance in it as a share of the initial stiffness; none where there are no such tangents
+      !> Stiffness of the springs in the tangent (springs), its version, and the resistance in it as a share
+      !> of the initial stiffness
       real(wp), allocatable, private :: k(:)
       integer, private :: version = -1
       !> Tangents at the start of a step, and their version, for damping in proportion to the present
@@ -120,7 +117,7 @@ contains
                       self%w1(structure%coordinates), source=0.0_wp)
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
-            if (size(structure%initial_tangent) > 0) allocate (self%k(springs))
+            allocate (self%k(springs))
             if (structure%tangent_damping) then
                self%damping_tangent = structure%initial_tangent
             else
@@ -222,7 +219,6 @@ contains
       type(state_type), intent(in) :: state
       integer :: unstable
 
-      if (.not. allocated(self%k)) return
       if (state%springs%version == self%version .and. &
           .not. abs(self%resistance - self%resistance_in) > 0.0_wp) return
       associate (structure => state%motion%structure)
@@ -245,10 +241,7 @@ contains
       call self%fit_elements(state)
       associate (structure => state%motion%structure)
          call end_of_step(self, h)
-         ! Where elements damp as wholes, the springs do not by themselves.
-         if (state%motion%damped .and. size(structure%initial_tangent) == 0) then
-            call structure%spring_rates(self%now%tangent, self%v1, self%w1)
-         end if
+         if (state%motion%springs_damp) call structure%spring_rates(self%now%tangent, self%v1, self%w1)
          call find_forces(state, self%q1, self%w1, self%v1, load, self%damping_tangent, self%now, self%g1)
       end associate
       self%known = .false.
@@ -263,7 +256,7 @@ contains
       real(wp), intent(in) :: h, load(signals)
       real(wp), intent(out) :: relative
 
-      if (.not. (self%known .and. size(state%motion%structure%initial_tangent) > 0)) then
+      if (.not. self%known .or. size(self%now%tangent) == 0) then
          call self%find_residual(state, h, load, relative)
          return
       end if
@@ -310,12 +303,10 @@ contains
       associate (motion => state%motion, structure => state%motion%structure)
          call motion%forces_on_bodies(state%springs, q, w, load, now, g)
          call structure%add_ground(load, g)
-         if (structure%damped .and. size(structure%initial_tangent) > 0) then
-            call structure%damp(v, damping_tangent, g)
-         end if
+         if (structure%damped) call structure%damp(v, damping_tangent, g)
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
          ! Supports balance the forces on them.
-         if (structure%has_held) where (structure%is_held) g = 0.0_wp
+         where (structure%is_held) g = 0.0_wp
       end associate
    end subroutine find_forces
 
@@ -454,13 +445,13 @@ contains
          end do
          ! Forces of members are sums over whole displacements, not over those of the step.
          call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
-         is_round_off = all(abs(self%r) <= round_off*(sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
-                                                      + max(force, terms)/unit_factor))
+         is_round_off = all(abs(self%r) <= round_off_of_sums* &
+                            (sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
+                             + max(force, terms)/unit_factor))
          ! Springs between the unknowns are in equilibrium too.
          if (size(self%now%correction) > 0) then
-            is_round_off = is_round_off .and. &
-                           all(self%stiff*abs(self%now%correction) <= round_off*(self%stiff*abs(self%q1) &
-                                                                                 + max(force, terms)))
+            is_round_off = is_round_off .and. all(self%stiff*abs(self%now%correction) <= round_off_of_sums* &
+                                                  (self%stiff*abs(self%q1) + max(force, terms)))
          end if
       end associate
    end function is_round_off
@@ -471,7 +462,7 @@ contains
 
       allocate (self%stiffness(structure%unknowns), self%k(size(structure%location)), source=0.0_wp)
       call self%matrix%create(structure%unknowns, structure%half_width)
-      if (size(structure%initial_tangent) == 0) return
+      if (all(structure%inertias > 0.0_wp)) return
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%matrix%band)
       self%initial = merge(0.0_wp, self%matrix%band(1, :), structure%inertias > 0.0_wp)
    end subroutine create
@@ -518,11 +509,10 @@ contains
             of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) &
                       + (1.0_wp - step%alpha_f)*of_damping*structure%mass_damping
             self%k = springs%k
-            if (allocated(step%k)) then
-               self%k = step%k
-            else if (structure%tangent_damping) then
-               self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
-            else if (motion%damped) then
+            if (step%resistance > 0.0_wp) self%k = self%k + step%resistance*structure%initial_stiffness
+            if (structure%tangent_damping) then
+               self%k = self%k + (of_damping*structure%spring_damping)*max(springs%k, 0.0_wp)
+            else if (motion%springs_damp) then
                self%k = self%k + of_damping*motion%joint_damping
             end if
             self%matrix%band = 0.0_wp
@@ -533,11 +523,9 @@ contains
             if (motion%second_order) call structure%add_geometric(step%now%axial, self%matrix%band)
             self%matrix%band = (1.0_wp - step%alpha_f)*self%matrix%band
             self%matrix%band(1, :) = self%matrix%band(1, :) + of_mass*structure%inertias
-            if (structure%has_held) then
-               do i = 1, structure%unknowns
-                  if (structure%is_held(i)) call self%matrix%hold(i, of_mass*structure%inertias(i))
-               end do
-            end if
+            do i = 1, structure%unknowns
+               if (structure%is_held(i)) call self%matrix%hold(i, of_mass*structure%inertias(i))
+            end do
             self%stiffness = self%matrix%band(1, :)
             self%holds = .false.
             call self%matrix%factor()

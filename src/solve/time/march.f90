@@ -7,7 +7,7 @@ module rbs_solve_time_march
    use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: checkpoint_type
-   use rbs_solve_task, only: task_type
+   use rbs_solve_task, only: task_type, many_unknowns
    use rbs_loading_loads, only: loads_type, lateral, horizontal
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
@@ -134,8 +134,8 @@ contains
                   if (allocated(error) .or. ends) return
                   if (task%every /= unset_integer) next_row = min(step + task%every, plan%steps)
                end if
-               ! Steps of frames are long.
-               if (iand(step, merge(15, 1023, size(state%motion%structure%initial_tangent) > 0)) == 0) then
+               ! Steps of many unknowns are long.
+               if (iand(step, merge(15, 1023, state%motion%structure%unknowns >= many_unknowns)) == 0) then
                   if (associated(task%progress)) call task%progress%update(real(step, wp)/plan%steps)
                   if (task%stops()) then
                      task%summary%remark = 'the run was stopped at time '//to_text(state%clock)// &

@@ -32,6 +32,8 @@ module rbs_solve_time_motion
       real(wp), allocatable :: joint_damping(:), modal(:, :)
       !> Whether there is damping at all, and whether any axial force does second-order work
       logical :: damped = .false., second_order = .false.
+      !> Whether springs are damped one by one, or by modes of their deformations
+      logical :: springs_damp = .false.
       !> The spring whose force is the base shear, 0 where more than that belongs to it
       integer :: base_spring = 0
       !> Whether the power of the loads follows from velocity of the top and momentum alone, and that of
@@ -59,14 +61,14 @@ contains
       self%structure => structure
       self%acts = acts
       self%varies = acts(vertical) .or. acts(top_axial)
-      self%joint_damping = structure%stiffness_damping*structure%initial_stiffness
-      if (size(structure%initial_tangent) > 0) self%joint_damping = 0.0_wp
+      self%joint_damping = structure%spring_damping*structure%initial_stiffness
       self%damped = structure%damped
       if (.not. self%damped .and. structure%base_spring > 0) self%base_spring = structure%base_spring
       if (allocated(structure%modal_damping) .and. .not. allocated(structure%modal_momenta)) then
          call modal_damping(structure, self%modal, error)
          if (allocated(error)) return
       end if
+      self%springs_damp = structure%spring_damping > 0.0_wp .or. allocated(self%modal)
       self%second_order = structure%kinematics == pdelta .and. (structure%axially_loaded .or. self%varies)
       self%plain = structure%kinematics /= finite .and. .not. (self%damped .or. self%varies)
       if (structure%kinematics == finite .or. self%varies) return
@@ -163,9 +165,9 @@ contains
               springs%reference_axial_load(i))
          end do
       end if
-      if (.not. self%damped .or. size(self%structure%initial_tangent) > 0) return
+      if (.not. self%springs_damp) return
       if (self%structure%tangent_damping) then
-         f = f + self%structure%stiffness_damping*max(springs%k, 0.0_wp)*v
+         f = f + self%structure%spring_damping*max(springs%k, 0.0_wp)*v
       else
          f = f + self%joint_damping*v
       end if
@@ -209,12 +211,12 @@ contains
       watt = 0.0_wp
       if (.not. self%damped) return
       associate (structure => self%structure)
-         if (size(structure%initial_tangent) > 0) then
-            watt = 0.0_wp
-         else if (structure%tangent_damping) then
-            watt = structure%stiffness_damping*sum(max(springs%k, 0.0_wp)*v**2)
-         else
-            watt = sum(self%joint_damping*v**2)
+         if (self%springs_damp) then
+            if (structure%tangent_damping) then
+               watt = structure%spring_damping*sum(max(springs%k, 0.0_wp)*v**2)
+            else
+               watt = sum(self%joint_damping*v**2)
+            end if
          end if
          if (allocated(self%modal)) then
             watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
@@ -247,7 +249,7 @@ contains
             force = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
             if (self%damped) then
                if (structure%tangent_damping) then
-                  force = force + structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
+                  force = force + structure%spring_damping*max(springs%k(i), 0.0_wp)*v(i)
                else
                   force = force + self%joint_damping(i)*v(i)
                end if

@@ -186,7 +186,7 @@ contains
    pure character(len=160) function remedy(structure)
       class(structure_type), intent(in) :: structure
 
-      if (size(structure%initial_tangent) > 0) then
+      if (structure%is_implicit) then
          remedy = 'Damping in proportion to the stiffness holds members that soften; look at the '// &
                   'member that is named'
       else

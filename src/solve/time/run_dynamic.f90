@@ -53,7 +53,7 @@ contains
       on_planes = any(structure%rules%name == 'layered') .and. &
                   (loads%signal(vertical)%is_nonzero() .or. loads%signal(top_axial)%acts())
       plan%method = analysis%method
-      if (size(structure%initial_tangent) > 0) then
+      if (structure%is_implicit) then
          call choose_implicit()
          if (allocated(error)) return
       end if

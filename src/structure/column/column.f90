@@ -15,6 +15,7 @@ module rbs_structure_column_column
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: round_off
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_column_chain, only: deformations, displacements, joint_forces, second_order_forces, &
@@ -24,7 +25,7 @@ module rbs_structure_column_column
    use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_location, only: flexure
+   use rbs_structure_spring_location, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, &
                                       power_of_patterns, small, pdelta, &
                                       finite, lateral, horizontal, vertical, top_axial, signals
@@ -109,6 +110,9 @@ module rbs_structure_column_column
       procedure :: check_initial
       procedure :: check_inertia
       procedure :: dynamic_parts
+      procedure :: set_shape
+      procedure :: is_in_series
+      procedure :: clear_round_off
       procedure :: momenta
       procedure :: channels
       procedure :: fill_row
@@ -482,6 +486,47 @@ contains
       end associate
       call move_alloc(chain, part)
    end subroutine dynamic_parts
+
+   !> The top moves to +x, or up if it moves along the column only.
+   subroutine set_shape(self, part, found, shape)
+      class(column_type), intent(in) :: self
+      integer, intent(in) :: part
+      real(wp), intent(in), contiguous :: found(:)
+      real(wp), intent(inout), contiguous :: shape(:)
+      real(wp) :: along
+
+      if (part == 2) then
+         shape = unpack(found(::2), self%location%kind == axial, shape)
+         along = sum(shape)
+      else
+         shape = unpack(found(::2), self%location%kind == shear, shape)
+         shape = unpack(found(2::2), self%location%kind == flexure, shape)
+         along = self%top_displacement(shape)
+      end if
+      shape = sign(1.0_wp, along)*shape
+   end subroutine set_shape
+
+   pure logical function is_in_series(self)
+      class(column_type), intent(in) :: self
+
+      is_in_series = .not. (self%axially_loaded .or. self%held)
+   end function is_in_series
+
+   !> Where a spring without stiffness moves alone, the force rates of all others are round-off.
+   pure subroutine clear_round_off(self, tangent, dx, k, dd)
+      class(column_type), intent(in) :: self
+      type(series_tangent), intent(in) :: tangent(:)
+      real(wp), intent(in), contiguous :: dx(:), k(:)
+      real(wp), intent(inout), contiguous :: dd(:)
+      real(wp) :: lever(self%moving), largest
+
+      associate (m => self%moving)
+         if (all(abs(k(:m)) > 0.0_wp)) return
+         lever = merge(self%total_height, 1.0_wp, self%location(:m)%kind == flexure)
+         largest = maxval(self%initial_stiffness(:m)*abs(dd(:m))/lever, mask=.not. abs(k(:m)) > 0.0_wp)
+         where (abs(k(:m)) > 0.0_wp .and. abs(k(:m)*dd(:m))/lever < round_off*largest) dd(:m) = 0.0_wp
+      end associate
+   end subroutine clear_round_off
 
    !> Momenta of a motion of the joints, conjugate to it.
    pure subroutine momenta(self, shape, momentum)

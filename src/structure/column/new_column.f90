@@ -67,6 +67,7 @@ contains
       end if
       column%mass_damping = spec%damping%mass
       column%stiffness_damping = spec%damping%stiffness
+      column%spring_damping = column%stiffness_damping
       column%tangent_damping = spec%damping%tangent
       if (allocated(spec%damping%modal)) column%modal_damping = spec%damping%modal
       column%damped = column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp .or. &
@@ -201,7 +202,11 @@ contains
       allocate (column%inertias(m), column%is_held(m), column%part(m))
       column%is_held = .false.
       column%is_held(2*n) = column%held
-      column%has_held = column%held
+      ! Axial springs keep still where no axial load changes.
+      column%moving = 2*n
+      column%is_still = column%is_held
+      column%is_still(2*n + 1:) = .true.
+      column%loses_digits = .true.
       do i = 1, n
          column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
          column%part(2*i - 1:2*i) = i

@@ -2,6 +2,7 @@
 !> balance its springs, its second-order forces and its elastic energy.
 module rbs_structure_frame_element_balance
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: round_off_of_rates
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_frame_element, only: frame_element, element_joint
    implicit none
@@ -10,10 +11,7 @@ module rbs_structure_frame_element_balance
    public :: end_motion, motion_terms, chord_rotation, compatibility_error, set_tangent, balance_ends, &
              balance_of_ends
    public :: add_end_forces, add_second_order, add_band, add_geometric_band
-   public :: spring_motion, clear_round_off, energy_of_rest
-
-   !> Share of the terms of a rate that it is round-off below.
-   real(wp), parameter :: round_off = 1.0e-12_wp
+   public :: spring_motion, drop_round_off, energy_of_rest
 
 contains
 
@@ -304,7 +302,7 @@ contains
    end subroutine spring_motion
 
    !> Take rates of springs that are round-off of their terms for zero.
-   pure subroutine clear_round_off(e, tangent, size_of, d)
+   pure subroutine drop_round_off(e, tangent, size_of, d)
       type(frame_element), intent(in) :: e
       type(series_tangent), intent(in) :: tangent
       !> Sizes of the motion of the ends, see `motion_terms`
@@ -316,11 +314,11 @@ contains
 
       do j = 1, size(e%joint)
          associate (of => e%joint(j), at => e%joint(j)%spring, i => e%before + e%joint(j)%first)
-            least = round_off*sum(abs(tangent%rate(:, at))*size_of)
+            least = round_off_of_rates*sum(abs(tangent%rate(:, at))*size_of)
             if (of%is_single) then
                if (abs(d(i)) < least) d(i) = 0.0_wp
             else
-               across = round_off*sum(abs(tangent%rate(:, at + 1))*size_of)
+               across = round_off_of_rates*sum(abs(tangent%rate(:, at + 1))*size_of)
                associate (last => e%before + of%last, turn => abs(tangent%turn(:, j)))
                   opening = turn(1)*least + turn(2)*across
                   tilt = (turn(2)*least + turn(1)*across)/of%radius
@@ -330,7 +328,7 @@ contains
             end if
          end associate
       end do
-   end subroutine clear_round_off
+   end subroutine drop_round_off
 
    pure subroutine drop_below(n, y, opening, tilt, d)
       integer, intent(in) :: n

@@ -15,7 +15,7 @@ module rbs_structure_frame_frame
                                                   set_tangent, balance_ends, balance_of_ends, &
                                                   add_end_forces, &
                                                   add_second_order, add_band, add_geometric_band, &
-                                                  spring_motion, clear_round_off
+                                                  spring_motion, drop_round_off
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_structure, only: structure_type, lateral, signals, top_axial
    implicit none
@@ -84,7 +84,7 @@ module rbs_structure_frame_frame
       procedure :: build_later
       procedure :: set_compression
       procedure :: compress
-      procedure :: drop_round_off
+      procedure :: clear_round_off
       procedure :: size_of_parts
       procedure :: member_forces
       procedure :: spring_rates
@@ -318,13 +318,12 @@ contains
       dd(self%springs + 1:self%joints%before) = dx
    end subroutine spring_rates
 
-   !> Take rates that are round-off of larger ones for zero: a spring at rest on a corner of its
-   !> curve, as in a mechanism beside it, must not be sent either way. Larger ones are those of the ends of
-   !> its element, and of all elements, as displacements are round-off of each other.
-   pure subroutine drop_round_off(self, tangent, dx, dd)
+   !> Larger rates are those of the ends of the element, and of all elements, as displacements are round-off
+   !> of each other.
+   pure subroutine clear_round_off(self, tangent, dx, k, dd)
       class(frame_type), intent(in) :: self
       type(series_tangent), intent(in) :: tangent(:)
-      real(wp), intent(in), contiguous :: dx(:)
+      real(wp), intent(in), contiguous :: dx(:), k(:)
       real(wp), intent(inout), contiguous :: dd(:)
       real(wp) :: largest(3), size_of(3)
       integer :: i
@@ -338,10 +337,10 @@ contains
             size_of = motion_terms(e, dx)
             ! The share of a layer in a motion may be as small without being round-off.
             if (.not. allocated(e%y)) size_of = max(size_of, of_all*largest)
-            call clear_round_off(e, tangent(i), size_of, dd)
+            call drop_round_off(e, tangent(i), size_of, dd)
          end associate
       end do
-   end subroutine drop_round_off
+   end subroutine clear_round_off
 
    !> Largest force of elements and dead loads, and the largest force and the work of elements that are
    !> sums of terms of one sign; moments over the height.

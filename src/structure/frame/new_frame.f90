@@ -132,6 +132,9 @@ contains
       do i = 1, frame%members
          call frame%element(i)%bend_as_springs(frame%initial_stiffness)
       end do
+      frame%moving = frame%springs
+      frame%is_still = frame%is_held
+      frame%is_implicit = .true.
       frame%axially_loaded = kinematics == pdelta
       frame%axial_count = merge(size(member), 0, frame%axially_loaded)
       frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%member_springs, 1.0_wp)]
