@@ -1,6 +1,7 @@
 """Change the program in the ways of mutants.csv, one at a time; see which test notices each.
 
     python scripts/mutants.py [--work DIR] [--only NAME ...] [--own] [--table]
+    python scripts/mutants.py --draw COUNT SEED
 
 Every mutant is a slip that a programmer could make: a factor left out, a sign, a bound, a wrong
 index. The tree is copied once to a working folder and built there. Then each mutant in turn is
@@ -10,7 +11,7 @@ notices has survived: a behaviour is not proved.
 
 The results are kept in DIR/results.json, so that a run can be stopped and taken up again; remove
 the file to begin anew. `--table` prints it as a table in Markdown. The exit code is 1 if a mutant
-has survived.
+has survived. `--draw` prints rows for mutants.csv, drawn at random from the package.
 
 It needs the virtual environment that scripts/test.sh makes, in which the package is installed
 plainly: an editable install would hide changes of Python. It takes about half an hour.
@@ -19,15 +20,18 @@ plainly: an editable install would hide changes of Python. It takes about half a
 from __future__ import annotations
 
 import argparse
+import ast
 import contextlib
 import csv
 import json
 import os
+import random
+import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -66,6 +70,78 @@ class Mutant:
 
 with (ROOT / "scripts" / "mutants.csv").open(encoding="utf-8", newline="") as _rows:
     MUTANTS = tuple(Mutant(**row) for row in csv.DictReader(_rows))
+
+
+#: What a drawn mutant exchanges.
+EXCHANGED = {
+    ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*",
+    ast.Lt: ">=", ast.LtE: ">", ast.Gt: "<=", ast.GtE: "<",
+}  # fmt: skip
+SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
+         ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}  # fmt: skip
+#: Rooms of the package that are not drawn from.
+LEFT_OUT = ("output", "web", "cli")
+
+
+def draw(count: int, seed: int) -> list[Mutant]:
+    """Return mutants of the package that are drawn at random.
+
+    Of sums, products, comparisons and numbers an operator is exchanged, a comparison turned round,
+    a number made a tenth larger.
+    """
+    root = ROOT / "python" / "rbsdem"
+    files = (path for path in sorted(root.rglob("*.py")) if path.parent.name not in LEFT_OUT)
+    slips = [slip for path in files for slip in _slips(path)]
+    return [_drawn(*slip) for slip in random.Random(seed).sample(slips, count)]
+
+
+def _slips(path: Path) -> Iterator[tuple[Path, str, str, str]]:
+    """Yield file, line before and after, and function, of all slips that are one in their file."""
+    text = path.read_text("utf-8")
+    lines = text.splitlines()
+    tree = ast.parse(text)
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    for node in ast.walk(tree):
+        at, new = _slip(node, lines)
+        if not new or text.count(lines[at].strip()) != 1:
+            continue
+        around = [f for f in functions if f.lineno <= at + 1 <= (f.end_lineno or 0)]
+        if around:
+            yield path, lines[at].strip(), new.strip(), around[-1].name
+
+
+def _slip(node: ast.AST, lines: list[str]) -> tuple[int, str]:
+    """Return the place of a line and what becomes of it; an empty text if nothing does."""
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        line, more = lines[node.lineno - 1], repr(round(1.1 * node.value, 12))
+        more = repr(node.value + 1) if isinstance(node.value, int) else more
+        return node.lineno - 1, line[: node.col_offset] + more + line[node.end_col_offset :]
+    if isinstance(node, ast.BinOp):
+        left, right, kind = node.left, node.right, type(node.op)
+    elif isinstance(node, ast.Compare) and len(node.ops) == 1:
+        left, right, kind = node.left, node.comparators[0], type(node.ops[0])  # type: ignore[assignment]
+    else:
+        return 0, ""
+    if kind not in SIGNS or left.end_lineno != right.lineno or not left.end_lineno:
+        return 0, ""
+    line = lines[left.end_lineno - 1]
+    between = line[left.end_col_offset : right.col_offset]
+    if between.strip(" ()") != SIGNS[kind]:  # type: ignore[index]
+        return 0, ""
+    other = between.replace(SIGNS[kind], EXCHANGED[kind])  # type: ignore[index]
+    return left.end_lineno - 1, line[: left.end_col_offset] + other + line[right.col_offset :]
+
+
+def _drawn(path: Path, old: str, new: str, function: str) -> Mutant:
+    """Return a drawn mutant with the tests that name its function, or its module."""
+    tests = {
+        test.stem: test.read_text("utf-8") for test in (ROOT / "tests/python").glob("test_*.py")
+    }
+    known = [name for name, text in tests.items() if re.search(rf"\b{function}\b", text)]
+    known += [name for name, text in tests.items() if re.search(rf"\b{path.stem}\b", text)]
+    likely = " ".join(sorted(dict.fromkeys(known))[:4])
+    where = str(path.relative_to(ROOT))
+    return Mutant(f"py-{path.stem}-{function.strip('_')}", where, old, new, path.stem, likely)
 
 
 class MutantError(Exception):
@@ -267,7 +343,12 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", metavar="NAME", help="these mutants, done or not")
     parser.add_argument("--own", action="store_true", help="run only the tests named in the csv")
     parser.add_argument("--table", action="store_true", help="print the results and stop")
+    parser.add_argument("--draw", nargs=2, type=int, metavar=("COUNT", "SEED"))
     given = parser.parse_args()
+    if given.draw:
+        rows = csv.writer(sys.stdout, lineterminator="\n")
+        rows.writerows(astuple(mutant) for mutant in draw(*given.draw))
+        return 0
     file = given.work / "results.json"
     results = json.loads(file.read_text("utf-8")) if file.is_file() else {}
     if given.table:

@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 import rbsdem
-from rbsdem.calibration import undetermined
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.peer import Specimen, read_specimens
 from rbsdem.springs import Elastic, Takeda
@@ -93,8 +92,6 @@ def one(
                 offered = list(getattr(column, "parameters", ()))[:6]
                 offered = offered or [f"flexure.{name}" for name in TAKEDA]
             names = free or offered
-            left_out = undetermined(column, test, names)
-            names = [name for name in names if name not in left_out]
             fit = rbsdem.calibrate(
                 column, test, names, loss=loss, evaluations=evaluations, seconds=seconds
             )
@@ -105,7 +102,8 @@ def one(
         row[name] = getattr(fit.after, name)
     row |= {"evaluations": fit.evaluations, "seconds": fit.seconds, "status": fit.status}
     row["at_bound"] = sum(bool(number.at_bound) for number in fit.parameters)
-    row["left_out"] = " ".join(left_out)
+    known = {each.name for each in fit.parameters if np.isfinite(each.standard_error)}
+    row["left_out"] = " ".join(name for name in names if name not in known)
     return row | fit.values
 
 

@@ -40,7 +40,7 @@ import doubts
 import numpy as np
 
 from rbsdem import peer
-from rbsdem.calibration.search import Target
+from rbsdem.calibration.fit import Target
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.run.result import reached_force
 from rbsdem.section.parameters import ModelParameters, parameters, table

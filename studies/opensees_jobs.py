@@ -55,7 +55,7 @@ def inputs(job: str) -> tuple[Any, ...]:
     return {"earthquake": (given.motion(),), "ida": (given.records(), given.LEVELS)}.get(job, ())
 
 
-def turns(key: str) -> rbsdem.measured.tests.Reversals:
+def turns(key: str) -> rbsdem.measured.tests.PeerTest:
     """Return the reversal points of a test."""
     return rbsdem.peer.shipped_reversals(key)
 

@@ -91,4 +91,4 @@ if __name__ == "__main__":
     from rbsdem import peer
 
     test = peer.shipped_reversals("soesianawati_1")
-    print(np.c_[test.force, solve(DRAWINGS[test.key], test.displacement)])
+    print(np.c_[test.force, solve(DRAWINGS["soesianawati_1"], test.displacement)])

@@ -23,4 +23,4 @@ def solve(of: Drawing, displacement: np.ndarray) -> np.ndarray:
 
 if __name__ == "__main__":
     test = rbsdem.peer.shipped_reversals("soesianawati_1")
-    print(np.c_[test.force, solve(DRAWINGS[test.key], test.displacement)])
+    print(np.c_[test.force, solve(DRAWINGS["soesianawati_1"], test.displacement)])

@@ -155,7 +155,7 @@ rbsdem.matrices rbsdem.modes rbsdem.protocol rbsdem.read_case rbsdem.read_result
 rbsdem.time_history rbsdem.codes.code_values rbsdem.plot.history rbsdem.section.column
 rbsdem.section.diagram rbsdem.section.interaction rbsdem.section.parameters
 rbsdem.section.moment_curvature rbsdem.section.shear_diagram rbsdem.section.shear_strength
-rbsdem.section.springs rbsdem.section.strains calibration.free_names calibration.undetermined
+rbsdem.section.springs rbsdem.section.strains calibration.free_names
 curves.displacement_metrics curves.energy curves.envelope curves.half_cycles curves.resample
 curves.secant_stiffness curves.strength_loss curves.summarise curves.turning_points
 fragility.Hazard fragility.CollapseSearch fragility.fit_fragility fragility.stripes

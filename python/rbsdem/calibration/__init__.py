@@ -7,4 +7,3 @@ a drawing offers.
 from rbsdem.calibration.fit import Calibration as Calibration
 from rbsdem.calibration.fit import calibrate as calibrate
 from rbsdem.calibration.fit import free_names as free_names
-from rbsdem.calibration.fit import undetermined as undetermined

@@ -1,8 +1,10 @@
-"""The function `calibrate`: search, refusals, and how well the test determines what was free.
+"""The function `calibrate`: a search for the least error, and what the test determines.
 
-J is the derivative of the error vector with respect to the fractions of the parameters, at the fit.
-Parameters whose columns of J are almost parallel cannot be distinguished: their correlation is that
-of (J'J)^-1.
+The force of a chain of straight lines is continuous in its parameters nearly everywhere, with kinks
+where a spring takes another line, and the error has several minima. So least squares
+(`scipy.optimize.least_squares`) start from the best points of a Latin hypercube, with coarse finite
+differences, which smooth the kinks; then finer ones from the best of them, the last with the dogleg
+method, which can reach the bounds.
 
 The errors of a model at neighbouring points of a path are not independent, so s^2 (J'J)^-1, which
 assumes that they are, would be far too small. The G half cycles of the test are taken as
@@ -13,9 +15,10 @@ Journal of Human Resources 50).
 
 from __future__ import annotations
 
-import math
+import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from typing import Any, Generic, TypeVar, cast
 
@@ -26,16 +29,35 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._package import unwarned
 from rbsdem._progress import progress_bar
 from rbsdem._types import Array, DataFrame
-from rbsdem.calibration.paths import Parameters, free_parameters
-from rbsdem.calibration.search import AT_BOUND, LOSSES, Misfit, Search, Target, refused, rms
+from rbsdem.calibration.paths import Parameters
+from rbsdem.curves.metrics import N_POINTS, PathPoints, half_cycle_numbers, work
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Parameter
 from rbsdem.model.frame import Structure
 from rbsdem.run.result import reached_force
 
-#: Number of random points, besides the start, at which the effect of a parameter is tried.
-_LOOKS = 3
+#: Errors that may be minimised. In "balanced", an error of 1 in the ratio of peaks, or of energies,
+#: counts as an nrmse of `RATIO_WEIGHT`.
+LOSSES, RATIO_WEIGHT = ("nrmse", "balanced"), 0.5
+#: Error of a refused column as a share of the measured peak: larger than that of any analysis.
+REFUSED = 10.0
+#: Points of the hypercube for each free parameter, the least number of points, rounds in which
+#: refused points are drawn again, and descents from the best points.
+SAMPLES_EACH, SAMPLES_LEAST, DRAWS, STARTS = 10, 40, 20, 6
+#: Descents from the best: steps of finite differences as shares of the distance between the bounds.
+COARSE, MIDDLE, FINE = 0.02, 0.005, 0.0005
+#: Points that are computed at a time.
+BATCH = 16
+#: A fraction closer to a bound than this is taken to be on it.
+AT_BOUND = 1e-3
+#: Change of the force over the peak, per fraction, below which a parameter has no effect.
+NO_EFFECT = 1e-6
+#: Correlation above which two parameters cannot be distinguished.
+TOO_ALIKE = 0.95
+
+#: A fit has the type of the structure that it was made for.
+AnyStructure = TypeVar("AnyStructure", bound=Structure)
 
 
 def free_names(column: Structure) -> dict[str, Parameter | None]:
@@ -52,44 +74,6 @@ def free_names(column: Structure) -> dict[str, Parameter | None]:
         Parameters by name; None if a calibration needs given bounds, as for a stiffness of 0.
     """
     return Parameters(column).known()
-
-
-def undetermined(
-    column: Structure,
-    test: Any,
-    free: Sequence[str],
-    bounds: Mapping[str, Sequence[float]] | None = None,
-) -> list[str]:
-    """Return the parameters that a calibration would refuse: they change no force of the test.
-
-    Parameters
-    ----------
-    column : Column or Frame
-        The column.
-    test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
-        The measured loop.
-    free : sequence of str
-        Names of the parameters.
-    bounds : mapping of str to (low, high), optional
-        As for `calibrate`.
-
-    Returns
-    -------
-    list of str
-        Those that change no force between their bounds, from the start and from random points.
-
-    Raises
-    ------
-    InputError
-        For bad input.
-    """
-    target, parameters = Target(test), Parameters(column)
-    chosen = free_parameters(parameters, free, bounds)
-    with (
-        unwarned(),
-        Misfit(parameters.build, chosen, target, "nrmse", 1, lambda done, best: None) as misfit,
-    ):
-        return without_effect(misfit, _looks(misfit.start_fractions(), 0))
 
 
 def calibrate(
@@ -135,53 +119,54 @@ def calibrate(
     jobs : int, optional
         Analyses at a time, in threads. The fit does not depend on it.
     evaluations : int, optional
-        Approximate limit for the analyses of the search. A few more show what the test determines.
+        Approximate limit for the analyses of the search.
     seconds : float, optional
         Wall time after which the search ends [s]; the fit then depends on the machine.
 
     Returns
     -------
     Calibration
-        The fitted column, its parameters with standard errors and sensitivities, report and figure.
-        A keyboard interrupt ends the search; the best fit so far is returned.
+        The fitted column, its parameters with standard errors, report and figure. A keyboard
+        interrupt ends the search; the best fit so far is returned.
 
     Raises
     ------
     InputError
-        For wrong input (unknown or repeated names, bounds that exclude the start), and for a
-        parameter that changes no force of the test anywhere between its bounds.
+        For wrong input: unknown or repeated names, bounds that exclude the start.
 
     Warns
     -----
     AccuracyWarning
-        If the test hardly determines a parameter, or does not distinguish two of them.
+        If the test does not determine a parameter, or does not distinguish two of them.
     """
-    started = time.perf_counter()
+    begin = time.perf_counter()
     loss = _arguments.choice(loss, "calibrate: loss", LOSSES)
-    _check(seed, jobs, evaluations, seconds)
-    target = Target(test)
-    parameters = Parameters(column)
-    chosen = free_parameters(parameters, free, bounds)
+    _arguments.integer(seed, "calibrate: seed", least=0)
+    _arguments.integer(jobs, "calibrate: jobs", least=1)
+    _arguments.integer(evaluations, "calibrate: evaluations", least=1)
+    if seconds is not None:
+        _arguments.number(seconds, "calibrate: seconds", above=0)
+    target, parameters = Target(test), Parameters(column)
+    chosen = parameters.free(free, bounds)
     wanted = _arguments.boolean(progress, "calibrate: progress")
     showing = progress_bar(wanted, evaluations, "analyses")
     # Warnings about the many columns of the search do not help the user.
-    with unwarned(), showing as show:
-        with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
-            start = misfit.start_fractions()
-            misfit.column(start)
-            refuse(misfit, without_effect(misfit, _looks(start, seed)))
-            status = Search(misfit, seed, evaluations, seconds).run()
-            fractions = misfit.best_fractions.copy()
-            found, correlation = determine(misfit, fractions)
-        fitted = cast(AnyStructure, misfit.column(fractions))
-        before, after = (_compared(tried, target, column) for tried in (column, fitted))
-    lines = tuple(warnings_of(found, correlation))
+    with unwarned(), showing as show, ThreadPoolExecutor(min(jobs, os.cpu_count() or 1)) as pool:
+        limits = evaluations, begin + (np.inf if seconds is None else seconds)
+        run = pool.map if jobs > 1 else map
+        misfit = Misfit(parameters.build, chosen, target, loss, limits, show, run)
+        misfit.column(misfit.start)
+        status = misfit.search(seed)
+        fitted, correlation = misfit.determine()
+        best = cast(AnyStructure, misfit.column(misfit.best_fractions))
+        before, after = (_compared(tried, target, column) for tried in (column, best))
+    lines = tuple(_warnings(fitted, correlation))
     for line in lines:
         warn(f"calibrate: {line}")
     return Calibration(
-        column=fitted,
+        column=best,
         start=column,
-        parameters=found,
+        parameters=fitted,
         before=before,
         after=after,
         correlation=correlation,
@@ -189,22 +174,10 @@ def calibrate(
         warnings=lines,
         loss=loss,
         seed=seed,
-        **{name: getattr(misfit, name) for name in ("evaluations", "failed", "refused")},
-        seconds=time.perf_counter() - started,
+        evaluations=misfit.evaluations,
+        failed=misfit.failed,
+        seconds=time.perf_counter() - begin,
     )
-
-
-def _check(seed: int, jobs: int, evaluations: int, seconds: float | None) -> None:
-    _arguments.integer(seed, "calibrate: seed", least=0)
-    _arguments.integer(jobs, "calibrate: jobs", least=1)
-    _arguments.integer(evaluations, "calibrate: evaluations", least=1)
-    if seconds is not None:
-        _arguments.number(seconds, "calibrate: seconds", above=0)
-
-
-def _looks(start: Array, seed: int) -> list[Array]:
-    """Return the points from which the effect of each parameter is tried."""
-    return [start, *np.random.default_rng(seed).random((_LOOKS, start.size))]
 
 
 def _compared(column: Structure, target: Target, start: Structure) -> Comparison:
@@ -216,14 +189,305 @@ def _compared(column: Structure, target: Target, start: Structure) -> Comparison
     return compare(loop, target, height=getattr(start, "height", None))
 
 
-_HEAD = ["", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At"]
+class Target:
+    """A measured loop, ready to be compared with many computed ones.
 
-_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
+    The error is that of `rbsdem.compare`: model minus test at points spaced evenly along the path
+    of displacement, over the largest measured force. Its root mean square is the nrmse.
 
-_LEGEND = (
-    "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
-    "the distance between its bounds, if it may be 0). Rise: growth of the loss by that.",
-)
+    Attributes
+    ----------
+    name : str
+        Name of the test.
+    displacement : ndarray, shape (rows,)
+        Displacement of the top, row by row [m].
+    force : ndarray, shape (rows,)
+        Net horizontal force [N].
+    peak : float
+        Largest absolute force [N].
+    half_cycle : ndarray of int, shape (points,)
+        Number of the half cycle to which each point belongs.
+    """
+
+    def __init__(self, test: Any) -> None:
+        self.name = str(getattr(test, "name", "") or "the test")
+        self.displacement, self.force = _loop(test)
+        self.peak = float(np.max(np.abs(self.force)))
+        if not self.peak > 0:
+            raise InputError("calibrate: the force of the test is 0 in every row")
+        if not np.any(np.diff(self.displacement)):
+            raise InputError(
+                f"calibrate: the displacement of the test is {self.displacement[0]:g} m in every "
+                "row; a loop needs one that changes"
+            )
+        self._points = PathPoints(self.displacement, N_POINTS, "displacement")
+        self._test = self._points(self.force)
+        self.half_cycle = half_cycle_numbers(self.displacement)[self._points.before]
+
+    def error(self, force: Array) -> Array:
+        """Return (model - test)/peak at the points, and 1 beyond the rows that were reached.
+
+        Parameters
+        ----------
+        force : ndarray, shape (m,)
+            Force of the model at the first m rows [N].
+        """
+        reached = force.size
+        if reached < self.force.size:
+            force = np.concatenate((force, np.zeros(self.force.size - reached)))
+        error = (self._points(force) - self._test) / self.peak
+        if reached < self.force.size:
+            error[~self._points.reached(reached)] = 1.0
+        return error
+
+    def ratios(self, force: Array) -> tuple[float, float]:
+        """Return peak and energy of the model over those of the test, for the rows reached."""
+        if force.size < 2:
+            return 0.0, 0.0
+        d, test = self.displacement[: force.size], self.force[: force.size]
+        done = work(d, test)[-1]
+        energy = float(work(d, force)[-1] / done) if done > 0 else 1.0
+        largest = float(np.max(np.abs(test)))
+        return (float(np.max(np.abs(force))) / largest if largest > 0 else 1.0), energy
+
+
+def _loop(test: Any) -> tuple[Array, Array]:
+    """Return displacement and net horizontal force of a test or of a pair of arrays."""
+    if hasattr(test, "displacement") and hasattr(test, "force"):
+        test = test.displacement, test.force
+    try:
+        displacement, force = test
+    except (TypeError, ValueError):
+        raise InputError(
+            f"calibrate: test: a {type(test).__name__} has no displacement and force; give a "
+            "measured test, or a pair of arrays [m, N]"
+        ) from None
+    d = _arguments.finite_vector(displacement, "calibrate: displacement of the test")
+    f = _arguments.finite_vector(force, "calibrate: force of the test")
+    if d.size != f.size:
+        raise InputError(
+            f"calibrate: the test has {d.size} displacements and {f.size} forces; they must be "
+            "equal in number"
+        )
+    if d.size < 3:
+        raise InputError(f"calibrate: the test has {d.size} rows; a loop needs at least 3")
+    return d, f
+
+
+class SearchStopped(Exception):  # noqa: N818 - not an error: the search may do no more
+    """The search has used up its analyses or its time."""
+
+
+class Misfit:
+    """The error of a column as a function of the fractions of its free parameters, from 0 to 1.
+
+    It counts the analyses and keeps the best point.
+
+    Parameters
+    ----------
+    build : callable
+        Makes the column from values by name, or raises `InputError`.
+    free : mapping of str to Parameter
+        The parameters that are free, in order.
+    target : Target
+        The test.
+    loss : str
+        One of `LOSSES`.
+    limits : tuple of float, optional
+        Largest number of analyses of the search, and the time of its end [s].
+    show : callable, optional
+        Called with the number of analyses and the best loss so far, in words, after each.
+    run : callable, optional
+        Maps a function over points, as ``map``.
+    """
+
+    def __init__(
+        self,
+        build: Callable[[Mapping[str, float]], Structure],
+        free: Mapping[str, Parameter],
+        target: Target,
+        loss: str = "nrmse",
+        limits: tuple[float, float] = (np.inf, np.inf),
+        show: Callable[[int, str], None] = lambda done, best: None,
+        run: Callable[..., Any] = map,
+    ) -> None:
+        self._build, self.free, self.target, self.loss = build, dict(free), target, loss
+        self._limits, self._show, self._run = limits, show, run
+        self.evaluations = self.failed = 0
+        values = self.free.values()
+        self.start = np.array([parameter.fraction(parameter.value) for parameter in values])
+        self.best, self.best_fractions = np.inf, self.start
+
+    def column(self, fractions: Array) -> Structure:
+        """Return the column, or raise `InputError` if it is refused."""
+        pairs = zip(self.free.items(), fractions, strict=True)
+        return self._build({name: each.at(float(fraction)) for (name, each), fraction in pairs})
+
+    def vectors(self, points: Sequence[Array]) -> list[Array]:
+        """Return the error vectors of some points, whose mean squares are to be minimised."""
+        vectors = []
+        for fractions, (vector, status) in zip(points, self._run(self._solve, points), strict=True):
+            vectors.append(vector)
+            if status == "refused":
+                continue
+            self.evaluations += 1
+            self.failed += status == "failed"
+            if rms(vector) < self.best:
+                self.best, self.best_fractions = rms(vector), np.array(fractions, dtype=float)
+            self._show(self.evaluations, f"nrmse {self.best:.4f}")
+        return vectors
+
+    def _solve(self, fractions: Array) -> tuple[Array, str]:
+        try:
+            force, failed = reached_force(self.column(fractions), self.target.displacement)
+        except InputError:
+            ratios = 2 if self.loss == "balanced" else 0
+            return np.full(N_POINTS + ratios, REFUSED), "refused"
+        error = self.target.error(force)
+        if self.loss == "balanced":
+            # Scaled so that each ratio has its share in the mean square over the points.
+            ratios_off = np.array(self.target.ratios(force)) - 1.0
+            error = np.concatenate((error, RATIO_WEIGHT * np.sqrt(N_POINTS) * ratios_off))
+        return error, "failed" if failed else "completed"
+
+    def search(self, seed: int) -> str:
+        """Search, and return the reason for the end."""
+        try:
+            for fractions in self._sample(np.random.default_rng(seed)):
+                self._descend(fractions, COARSE, "trf", 12)
+            self._descend(self.best_fractions, MIDDLE, "trf", 12)
+            self._descend(self.best_fractions, FINE, "dogbox", 20)
+        except SearchStopped as stopped:
+            return str(stopped)
+        except KeyboardInterrupt:
+            return "interrupted"
+        return "converged"
+
+    def _limited(self, points: Sequence[Array]) -> list[Array]:
+        """Return error vectors, or raise `SearchStopped` if the search may do no more."""
+        if self.evaluations >= self._limits[0]:
+            raise SearchStopped("evaluations used up")
+        if time.perf_counter() > self._limits[1]:
+            raise SearchStopped("time used up")
+        return self.vectors(points)
+
+    def _sample(self, random: np.random.Generator) -> list[Array]:
+        """Return the best points of a Latin hypercube, the start among its points."""
+        from scipy.stats import qmc  # noqa: PLC0415
+
+        size = len(self.free)
+        wanted = max(SAMPLES_EACH * size, SAMPLES_LEAST)
+        wanted = int(min(wanted, max(self._limits[0] // 4, 1))) + 1
+        hypercube = qmc.LatinHypercube(size, rng=random)
+        points, losses = [self.start, *hypercube.random(wanted - 1)], list[float]()
+        # Refused points are drawn again, as the allowed region is not a box.
+        for _ in range(DRAWS):
+            while len(losses) < len(points):
+                batch = points[len(losses) : len(losses) + BATCH]
+                losses += [rms(vector) for vector in self._limited(batch)]
+            missing = wanted - sum(loss < REFUSED for loss in losses)
+            if missing <= 0:
+                break
+            points += list(hypercube.random(missing))
+        order = [i for i in np.argsort(losses, kind="stable") if losses[i] < REFUSED]
+        return [points[i] for i in order[:STARTS]]
+
+    def _descend(self, fractions: Array, step: float, method: Any, most: int) -> None:
+        """Run least squares from a point; the best point on the way is kept."""
+        from scipy.optimize import least_squares  # noqa: PLC0415
+
+        vectors: dict[bytes, Array] = {}
+
+        def error(at: Array) -> Array:
+            vectors[at.tobytes()] = vector = self._limited([at])[0]
+            return vector
+
+        least_squares(
+            error,
+            np.clip(fractions, 1e-6, 1 - 1e-6),
+            jac=lambda at: self.jacobian(at, step, vectors[at.tobytes()]),
+            bounds=(0.0, 1.0),
+            method=method,
+            max_nfev=most,
+            ftol=1e-6,
+            xtol=1e-5,
+            # As good as the decomposition of J, which many threads of BLAS slow down. It searches
+            # a plane, so it needs two parameters.
+            tr_solver="lsmr" if fractions.size > 1 else "exact",
+        )
+
+    def jacobian(self, fractions: Array, step: float, base: Array) -> Array:
+        """Return finite differences in a direction that stays in bounds and is not refused."""
+        size = fractions.size
+        steps = np.where(fractions + step <= 1.0, step, -step)
+        jacobian = np.zeros((base.size, size))
+        for i, vector in enumerate(self._limited(list(fractions + np.diag(steps)))):
+            if refused(vector):
+                steps[i] *= -1.0
+                other = fractions + steps[i] * np.eye(size)[i]
+                vector = self._limited([other])[0] if 0 <= other[i] <= 1 else vector  # noqa: PLW2901
+            if not refused(vector):
+                jacobian[:, i] = (vector - base) / steps[i]
+        return jacobian
+
+    def determine(self) -> tuple[tuple[Fitted, ...], Array]:
+        """Return the parameters at the best point, with standard errors, and their correlation.
+
+        A parameter with which no force changes goes back to its start; its correlation is NaN.
+        """
+        self._limits = np.inf, np.inf
+        fractions = self.best_fractions.copy()
+        base = self.vectors([fractions])[0]
+        jacobian = self.jacobian(fractions, FINE, base)
+        seen = np.sqrt(np.mean(jacobian**2, axis=0)) > NO_EFFECT
+        error, correlation = np.full(fractions.size, np.inf), np.eye(fractions.size)
+        correlation[~seen] = correlation[:, ~seen] = np.nan
+        np.fill_diagonal(correlation, 1.0)
+        if seen.any():
+            covariance, inverse = self._covariance(jacobian[:, seen], base)
+            spread = np.sqrt(np.diag(inverse))
+            correlation[np.ix_(seen, seen)] = inverse / np.outer(spread, spread)
+            error[seen] = np.sqrt(np.diag(covariance))
+        back = np.where(seen, fractions, self.start)
+        if not seen.all() and rms(self.vectors([back])[0]) <= self.best:
+            fractions = self.best_fractions = back
+        fitted = []
+        for (name, each), fraction, spread in zip(self.free.items(), fractions, error, strict=True):
+            value = each.at(fraction)
+            bound = "low" if fraction < AT_BOUND else "high" if fraction > 1 - AT_BOUND else ""
+            spread_of_value = float(spread * abs(each.per_fraction(value)))
+            start = each.unit, each.what, each.value, each.low, each.high
+            fitted.append(Fitted(name, *start, value, spread_of_value, bound))
+        return tuple(fitted), correlation
+
+    def _covariance(self, jacobian: Array, error: Array) -> tuple[Array, Array]:
+        """Return the covariance for errors clustered by half cycles, and (J'J)^-1.
+
+        The last is large but finite for parallel columns. Each ratio of a balanced loss is a
+        cluster of its own.
+        """
+        scale = np.sqrt(np.sum(jacobian**2, axis=0))
+        values, vectors = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
+        inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T / np.outer(scale, scale)
+        groups = self.target.half_cycle
+        groups = np.append(groups, groups[-1] + 1 + np.arange(error.size - groups.size))
+        several = np.unique(groups)
+        if several.size <= jacobian.shape[1]:
+            return np.full(inverse.shape, np.nan), inverse
+        scores = np.array([error[groups == g] @ jacobian[groups == g] for g in several])
+        # As a square, so that round-off leaves no variance below 0.
+        root = scores @ inverse
+        return root.T @ root * (several.size / (several.size - 1.0)), inverse
+
+
+def rms(vector: Array) -> float:
+    """Return the loss: the root of the sum of squares over the number of points."""
+    return float(np.sqrt(vector @ vector / N_POINTS))
+
+
+def refused(vector: Array) -> bool:
+    """Return whether a vector stands for a column that is refused."""
+    return bool(vector[0] == REFUSED and vector[-1] == REFUSED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,11 +503,6 @@ class Fitted:
     standard_error : float
         Standard error of the value [unit], from the scatter between half cycles; infinite if no
         force of the test changes with the parameter, NaN if there are too few half cycles.
-    effect : float
-        Root mean square change of the force over the measured peak, if the parameter alone changes
-        by 10 % (of the distance between its bounds, if it may be 0 or negative).
-    rise : float
-        Increase of the loss by that change; NaN if such a column is refused.
     at_bound : str
         "low" or "high" if the fit ended at that bound, otherwise "".
     """
@@ -256,13 +515,31 @@ class Fitted:
     high: float
     value: float
     standard_error: float
-    effect: float
-    rise: float
     at_bound: str
 
 
-#: A fit has the type of the structure that it was made for.
-AnyStructure = TypeVar("AnyStructure", bound=Structure)
+def _warnings(fitted: Sequence[Fitted], correlation: Array) -> list[str]:
+    """Return a line for everything that the test does not determine."""
+    lines = []
+    for each in fitted:
+        if np.isinf(each.standard_error):
+            lines.append(
+                f"{each.name}: no force of the test changes with it at the fit; other values fit "
+                "just as well"
+            )
+        elif each.at_bound:
+            lines.append(f"{each.name}: ended at its {each.at_bound} bound")
+    return lines + [
+        f"{fitted[j].name} and {each.name}: correlation {correlation[i, j]:+.3f}, the test does "
+        "not distinguish them; fix one of them"
+        for i, each in enumerate(fitted)
+        for j in range(i)
+        if abs(correlation[i, j]) > TOO_ALIKE
+    ]
+
+
+_HEAD = ["", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "At"]
+_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -285,9 +562,8 @@ class Calibration(Tabular, Generic[AnyStructure]):
         What the test does not determine.
     loss, seed : str, int
         The loss that was minimised, and the seed of the search.
-    evaluations, failed, refused : int
-        Number of analyses, of those that did not reach the end of the test, and of columns that
-        were refused (K_y above K_c) and cost no analysis.
+    evaluations, failed : int
+        Number of analyses, and of those that did not reach the end of the test.
     seconds : float
         Wall time [s].
     """
@@ -304,7 +580,6 @@ class Calibration(Tabular, Generic[AnyStructure]):
     seed: int
     evaluations: int
     failed: int
-    refused: int
     seconds: float
 
     @property
@@ -330,11 +605,9 @@ class Calibration(Tabular, Generic[AnyStructure]):
         done = f"{self.evaluations} analyses in {self.seconds:.2f} s{failed}"
         table = self.to_pandas().drop(columns="what").replace({"unit_of_values": {"": "-"}})
         numbers = dict.fromkeys(("start", "low", "high", "value"), "{:.4g}".format)
-        numbers |= {"standard_error": "{:.2g}".format, "effect": "{:.4f}".format}
-        how: Any = {"formatters": numbers | {"rise": "{:+.4f}".format}, "na_rep": "-"}
+        how: Any = {"formatters": numbers | {"standard_error": "{:.2g}".format}}
         lines = [f"Fit to {self.after.name}", _text(scores, float_format="{:.4f}".format)]
         lines += [f"{self.status}: {done}", "", _text(table, index=False, header=_HEAD, **how)]
-        lines += ["", *_LEGEND]
         if len(self.parameters) > 1:
             names = list(self.values)
             lower = data_frame(np.where(np.tri(len(names)), self.correlation, np.nan))
@@ -351,189 +624,3 @@ class Calibration(Tabular, Generic[AnyStructure]):
 def _text(frame: DataFrame, **how: Any) -> str:
     """Return a table as text; what is not known is a dash."""
     return str(frame.to_string(**{"na_rep": "-"} | how))
-
-
-#: Change of a parameter for which its sensitivity is reported.
-CHANGE = 0.1
-
-#: Share of the peak force by which a parameter must change some force; otherwise it is refused.
-NO_EFFECT = 1e-6
-
-#: Root mean square change of the force over the peak, for CHANGE, below which a parameter is
-#: hardly determined.
-LITTLE_EFFECT = 1e-3
-
-#: Correlation above which two parameters cannot be distinguished.
-TOO_ALIKE = 0.95
-
-#: Steps for a derivative, as shares of the distance between the bounds. The second is used if
-#: nothing changes with the first.
-_STEPS = 0.005, 0.05
-
-
-def without_effect(misfit: Misfit, fractions: list[Array]) -> list[str]:
-    """Return the names of the parameters that change no force between their bounds.
-
-    Parameters
-    ----------
-    misfit : Misfit
-        The misfit.
-    fractions : list of ndarray, shape (p,)
-        Points from which each parameter alone is moved to its bounds.
-    """
-    idle = list(range(len(misfit.free)))
-    for base in fractions:
-        base_vector = misfit.vector(base)
-        if refused(base_vector):
-            continue
-        for i in list(idle):
-            ends = [_moved(base, i, fraction) for fraction in (0.0, 0.5, 1.0)]
-            for vector in misfit.vectors(ends):
-                if not refused(vector) and np.max(np.abs(vector - base_vector)) > NO_EFFECT:
-                    idle.remove(i)
-                    break
-        if not idle:
-            break
-    return [list(misfit.free)[i] for i in idle]
-
-
-def refuse(misfit: Misfit, names: list[str]) -> None:
-    """Raise `InputError` for parameters without effect."""
-    if not names:
-        return
-    ranges = ", ".join(
-        f"{name} from {misfit.free[name].low:g} to {misfit.free[name].high:g}" for name in names
-    )
-    largest = float(np.max(np.abs(misfit.target.displacement)))
-    raise InputError(
-        f"calibrate: the test cannot determine {ranges}: no force changes over displacements up "
-        f"to {largest:g} m. Leave {'it' if len(names) == 1 else 'them'} out of free, or move the "
-        "bounds"
-    )
-
-
-def determine(misfit: Misfit, fractions: Array) -> tuple[tuple[Fitted, ...], Array]:
-    """Return the parameters at a fit, how well the test determines them, and their correlation.
-
-    The correlation is NaN for a parameter with which no force changes.
-    """
-    size, vector = fractions.size, misfit.vector(fractions)
-    jacobian = _derivatives(misfit, fractions, vector)
-    seen = np.sqrt(np.mean(jacobian**2, axis=0)) > NO_EFFECT
-    error, correlation = np.full(size, np.inf), np.full((size, size), np.nan)
-    if seen.any():
-        inverse = _inverse(jacobian[:, seen])
-        spread = np.sqrt(np.diag(inverse))
-        correlation[np.ix_(seen, seen)] = inverse / np.outer(spread, spread)
-        covariance = _clustered(jacobian[:, seen], vector, inverse, _groups(misfit, vector))
-        error[seen] = np.sqrt(np.diag(covariance))
-    np.fill_diagonal(correlation, 1.0)
-    found = []
-    for i, ((name, one), fraction) in enumerate(zip(misfit.free.items(), fractions, strict=True)):
-        value = one.at(fraction)
-        bound = "low" if fraction < AT_BOUND else "high" if fraction > 1 - AT_BOUND else ""
-        start = name, one.unit, one.what, one.value, one.low, one.high, value
-        spread_of_value = float(error[i] * abs(one.per_fraction(value)))
-        effect = _effect(misfit, fractions, i, one, vector)
-        found.append(Fitted(*start, spread_of_value, *effect, bound))
-    return tuple(found), correlation
-
-
-def warnings_of(found: Sequence[Fitted], correlation: Array) -> list[str]:
-    """Return a line for everything that the test does not determine."""
-    lines = []
-    for one in found:
-        if np.isinf(one.standard_error):
-            lines.append(
-                f"{one.name}: no force of the test changes with it at the fit; other values fit "
-                "just as well"
-            )
-        elif one.effect < LITTLE_EFFECT:
-            lines.append(
-                f"{one.name}: hardly determined, {CHANGE:.0%} more or less change the force by "
-                f"{one.effect:.1e} of its peak"
-            )
-        if one.at_bound:
-            lines.append(f"{one.name}: ended at its {one.at_bound} bound")
-    return lines + [
-        f"{found[j].name} and {one.name}: correlation {correlation[i, j]:+.3f}, the test does not "
-        "distinguish them; fix one of them"
-        for i, one in enumerate(found)
-        for j in range(i)
-        if abs(correlation[i, j]) > TOO_ALIKE
-    ]
-
-
-def _moved(fractions: Array, i: int, fraction: float) -> Array:
-    moved = fractions.copy()
-    moved[i] = fraction
-    return moved
-
-
-def _derivatives(misfit: Misfit, fractions: Array, vector: Array) -> Array:
-    """Return the derivative of the vector with respect to each fraction."""
-    jacobian = np.zeros((vector.size, fractions.size))
-    for i in range(fractions.size):
-        for step in _STEPS:
-            jacobian[:, i] = _derivative(misfit, fractions, vector, i, step)
-            if rms(jacobian[:, i]) > NO_EFFECT:
-                break
-    return jacobian
-
-
-def _derivative(misfit: Misfit, fractions: Array, vector: Array, i: int, step: float) -> Array:
-    """Return central differences; one-sided ones at a bound or next to a refused column."""
-    ends = np.clip([fractions[i] - step, fractions[i] + step], 0.0, 1.0)
-    sides = [(end, misfit.vector(_moved(fractions, i, end))) for end in ends]
-    known = [(end, other) for end, other in sides if not refused(other)]
-    if len(known) < 2:
-        known.append((fractions[i], vector))
-    if len(known) < 2 or known[0][0] == known[1][0]:
-        return np.zeros(vector.size)
-    return np.asarray((known[1][1] - known[0][1]) / (known[1][0] - known[0][0]))
-
-
-def _inverse(jacobian: Array) -> Array:
-    """Return (J'J)^-1, which is large but finite for parallel columns."""
-    scale = np.sqrt(np.sum(jacobian**2, axis=0))
-    scaled = jacobian / scale
-    values, vectors = np.linalg.eigh(scaled.T @ scaled)
-    inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T
-    return np.asarray(inverse / np.outer(scale, scale))
-
-
-def _groups(misfit: Misfit, vector: Array) -> Array:
-    """Return the half cycle of each element; each ratio of a balanced loss has one of its own."""
-    groups = misfit.target.half_cycle
-    extra = vector.size - groups.size
-    return np.concatenate((groups, groups[-1] + 1 + np.arange(extra))) if extra else groups
-
-
-def _clustered(jacobian: Array, error: Array, inverse: Array, groups: Array) -> Array:
-    several = np.unique(groups)
-    if several.size <= jacobian.shape[1]:
-        return np.full(inverse.shape, np.nan)
-    scores = np.array([error[groups == g] @ jacobian[groups == g] for g in several])
-    # As a square, so that round-off leaves no variance below 0.
-    root = scores @ inverse
-    return root.T @ root * (several.size / (several.size - 1.0))
-
-
-def _effect(
-    misfit: Misfit, fractions: Array, i: int, one: Parameter, vector: Array
-) -> tuple[float, float]:
-    """Return change of force and growth of the loss for 10 % more or less of a parameter.
-
-    For a parameter that may be zero or negative it is 10 % of the distance between its bounds.
-    """
-    value, effect, rise = one.at(fractions[i]), 0.0, math.nan
-    step = CHANGE * (value if one.logarithmic else one.high - one.low)
-    for end in (value - step, value + step):
-        moved = _moved(fractions, i, one.fraction(min(max(end, one.low), one.high)))
-        if moved[i] == fractions[i]:
-            continue
-        other = misfit.vector(moved)
-        if not refused(other):
-            effect = max(effect, rms(other - vector))
-            rise = float(np.fmax(rise, rms(other) - rms(vector)))
-    return effect, rise

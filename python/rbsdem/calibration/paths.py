@@ -1,19 +1,18 @@
 """Names of the parameters in a column, such as ``flexure.k_y`` or ``flexure[0].d_y``.
 
-In a frame they begin with a kind of members, as ``kind-1.yield_moment``. A name is the path to a
-parameter through frozen dataclasses. Only parameters on which a static path depends have one. Where
-there are several springs, ``flexure[*].k_y`` is a factor on all of them, and
-``flexure.layers[*].f_y`` a factor on all layers of a joint that have an ``f_y``.
+In a frame they begin with a kind of members, as ``kind-1.yield_moment``. Only parameters on which a
+static path depends have a name. Where there are several springs, ``flexure[*].k_y`` is a factor on
+all of them, and ``flexure.layers[*].f_y`` a factor on all layers of a joint that have an ``f_y``.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from difflib import get_close_matches
 from functools import cache
-from itertools import pairwise
 from typing import Any
 
 from rbsdem import _arguments, _core
@@ -44,74 +43,220 @@ _OF_LAYOUT = ("rigid_end", "length", "sections", "failure_drift", "failure_load"
 _NORMAL = {"stiffness": "N/m", "deformation": "m", "force": "N"}
 _TURNING = {"stiffness": "N m/rad", "deformation": "rad", "force": "N m"}
 _UNITS = {"shear": _NORMAL, "flexure": _TURNING, "axial_spring": _NORMAL}
+#: Largest number of names in a message.
+_MANY = 30
 
-#: The path to a parameter: names of fields and indices of tuples; ``None`` stands for all indices.
-ParameterPath = tuple[str | int | None, ...]
+
+@dataclass(frozen=True)
+class _Place:
+    """A parameter of a structure: its name and value, the key of its rule, and the name of that.
+
+    A factor has no key, and the value 1.
+    """
+
+    name: str
+    value: float
+    key_name: str = ""
+    key: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value that the key takes."""
+        least, most = self.key.get("least"), self.key.get("most")
+        return -math.inf if least is None else least, math.inf if most is None else most
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value; empty for a factor. Layers of a joint are normal springs."""
+        unit = str(self.key.get("unit") or "")
+        group = next((_UNITS[word] for word in _UNITS if word in self.name), {})
+        return (_NORMAL if ".layers[" in self.name else group).get(unit, unit)
+
+    def parameter(self) -> Parameter | None:
+        """Return the parameter with its default bounds; None if they must be given."""
+        low, high = sorted((self.value / REACH, self.value * REACH))
+        if self.key_name in LIMITS:
+            low, high = LIMITS[self.key_name]
+            low, high = min(low, self.value), max(high, self.value)
+        elif self.value == 0:
+            return None
+        elif self.name in _PLAIN:
+            low, high = sorted((self.value * (1 - MEASURED), self.value * (1 + MEASURED)))
+        elif self.key_name in AFTER_YIELD:
+            low, high = sorted((0.0, self.value * REACH))
+        ends = max(low, self.ends[0]), min(high, self.ends[1])
+        return Parameter(self.value, *ends, self.unit, self.name)
 
 
-def paths(column: Structure) -> dict[str, ParameterPath]:
-    """Return the names of all parameters of a structure that its static path may depend on."""
-    if isinstance(column, Frame):
-        return {
-            f"{name}{rest}": (name, *path)
-            for name, kind in column.named_kinds.items()
-            for rest, path in _below(kind)
-            if path[0] not in _OF_LAYOUT and not (kind.sections and _is_one_layer(path))
-        }
-    found: dict[str, ParameterPath] = {name: (name,) for name in _PLAIN}
+class Parameters:
+    """The parameters of one structure: those that it offers, or otherwise the paths in it."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.offered = isinstance(getattr(structure, "parameters", None), Mapping)
+        if not self.offered:
+            checked_structure(structure, "calibrate: ")
+        self.structure: Any = structure  # with `parameters`, if it offers them
+        self._places = {} if self.offered else _places(structure)
+
+    def known(self) -> dict[str, Parameter | None]:
+        """Return all parameters by name; None for those whose bounds must be given."""
+        if self.offered:
+            return dict(self.structure.parameters)
+        return {name: place.parameter() for name, place in self._places.items()}
+
+    def build(self, values: Mapping[str, float]) -> Structure:
+        """Return the structure with other values, or raise `InputError` if it is refused."""
+        if self.offered:
+            changed: Structure = self.structure.with_parameters(**values)
+            return changed
+        return with_values(self.structure, values)
+
+    def free(
+        self, free: Sequence[str], bounds: Mapping[str, Sequence[float]] | None
+    ) -> dict[str, Parameter]:
+        """Return the parameters to fit, in the order of `free`, with their bounds.
+
+        Raises
+        ------
+        InputError
+            If names are unknown or repeated, or bounds are wrong.
+        """
+        known = self.known()
+        names = _names(list(known), free)
+        if not isinstance(bounds, Mapping | None):
+            raise InputError(
+                f"calibrate: bounds = {bounds!r} must be a mapping of name to (low, high)"
+            )
+        for name in bounds or {}:
+            if name not in names:
+                raise InputError(f"calibrate: bounds: {name!r} is not in free ({', '.join(names)})")
+        chosen = {}
+        for name in names:
+            parameter = known[name]
+            if bounds and name in bounds:
+                parameter = self._within(name, parameter, bounds[name])
+            if parameter is None:
+                raise InputError(
+                    f"calibrate: {name} = {self._places[name].value:g} has no default bounds; give "
+                    f"bounds={{{name!r}: (low, high)}}"
+                )
+            chosen[name] = parameter
+        return chosen
+
+    def _within(self, name: str, parameter: Parameter | None, pair: Any) -> Parameter:
+        """Return a parameter with bounds that a user gives."""
+        about = f"calibrate: bounds of {name}"
+        try:
+            low, high = pair
+        except (TypeError, ValueError):
+            raise InputError(f"{about} = {pair!r} must be (low, high)") from None
+        low, high = (_arguments.number(end, about) for end in (low, high))
+        start = parameter.value if parameter else self._places[name].value
+        if low < high and not low <= start <= high:
+            raise InputError(
+                f"{about}: {low:g} to {high:g} leave out the start {start:g}; move the bounds, or "
+                "start from another column"
+            )
+        if not self.offered:
+            least, most = self._places[name].ends
+            if low < least or high > most:
+                side = f"below {least:g}" if low < least else f"above {most:g}"
+                raise InputError(
+                    f"{about}: {low:g} to {high:g} go {side}, which the column refuses; move the "
+                    "bound"
+                )
+        try:
+            if parameter is None:
+                return Parameter(start, low, high, self._places[name].unit, name)
+            return replace(parameter, low=low, high=high)
+        except InputError as error:
+            raise InputError(f"{about}: {error}") from None
+
+
+def _names(known: list[str], free: Any) -> list[str]:
+    if isinstance(free, str) or not isinstance(free, Sequence | Mapping | set):
+        raise InputError(f"calibrate: free = {free!r} must be a list of names")
+    names, more = list(free), len(known) - _MANY
+    told = ", ".join(known[:_MANY])
+    if more > 0:
+        told += f" and {more} more (rbsdem.calibration.free_names lists them)"
+    if not names:
+        raise InputError(f"calibrate: free is empty; it names {told}")
+    for name in names:
+        if name not in known:
+            near = get_close_matches(str(name), known, n=1, cutoff=0.0)
+            if not near:
+                raise InputError(f"calibrate: free: {name!r}: this column has no parameters to fit")
+            raise InputError(
+                f"calibrate: free: {name!r} is not a parameter of this column; did you mean "
+                f"{near[0]!r}? It has {told}"
+            )
+        if names.count(name) > 1:
+            raise InputError(f"calibrate: free: {name!r} comes twice")
+    return names
+
+
+def _places(structure: Structure) -> dict[str, _Place]:
+    """Return all parameters that the static path of a structure may depend on, by name."""
+    frame = isinstance(structure, Frame)
+    leaves = _of_frame(structure) if isinstance(structure, Frame) else _of_column(structure)
+    places: dict[str, _Place] = {}
+    for names, rule, key_name, value in leaves:
+        key = _keys_of(rule, "member_kind" if frame else "column").get(key_name, {})
+        for name in names:
+            place = _Place(name, 1.0) if "*" in name else _Place(name, value, key_name, key)
+            places.setdefault(name, place)
+    return places
+
+
+#: Names of a number: its own, and those of factors on it; its rule; the name of its field; value.
+_Leaf = tuple[list[str], str, str, float]
+
+
+def _of_frame(frame: Frame) -> Iterator[_Leaf]:
+    for kind_name, kind in frame.named_kinds.items():
+        for names, rule, key_name, value in _leaves(kind, [kind_name]):
+            # The strips and bars of a drawn member change together.
+            single = re.compile(r"\.layers\[\d") if kind.sections else None
+            known = [name for name in names if not (single and single.search(name))]
+            field_of_kind = re.split(r"[.\[]", names[0].removeprefix(f"{kind_name}."))[0]
+            if known and field_of_kind not in _OF_LAYOUT:
+                yield known, rule, key_name, value
+
+
+def _of_column(column: Column) -> Iterator[_Leaf]:
+    yield from (([name], "", name, getattr(column, name)) for name in _PLAIN)
     for kind in _UNITS:
-        springs = getattr(column, kind)
-        if springs is not None:
-            found |= {f"{kind}{name}": (kind, *path) for name, path in _below(springs)}
-        joints = column.joint_numbers[-1]
+        springs, joints = getattr(column, kind), column.joint_numbers[-1]
+        yield from _leaves(springs, [kind])
         if isinstance(springs, Spring) and joints > 1:
             # Joints with the same spring may get different ones.
-            several = (springs,) * joints
-            found |= {f"{kind}{name}": (kind, *path) for name, path in _below(several)}
-    return found
+            yield from _leaves((springs,) * joints, [kind])
 
 
-def _is_one_layer(path: ParameterPath) -> bool:
-    """Return whether a path leads to a single layer: a strip or a bar of a drawn member."""
-    return any(step == "layers" and below is not None for step, below in pairwise(path))
+def _leaves(part: Any, names: list[str], rule: str = "", key_name: str = "") -> Iterator[_Leaf]:
+    """Yield the numbers in a spring, in several, or in what has springs."""
+    if isinstance(part, tuple):
+        for place, item in enumerate(part):
+            if is_dataclass(_spring(item)):
+                yield from _leaves(_spring(item), _of_item(names, place), rule)
+    elif is_dataclass(part):
+        rule = getattr(part, "rule", rule)
+        for each in fields(part):
+            if each.init:
+                below = [f"{name}.{each.name}" for name in names]
+                yield from _leaves(getattr(part, each.name), below, rule, each.name)
+    elif isinstance(part, float):
+        yield names, rule, key_name, part
 
 
-def parameter(column: Structure, name: str, path: ParameterPath) -> Parameter | None:
-    """Return the parameter at a path with its default bounds; None if they must be given."""
-    value = value_at(column, path)
-    bounds = default_bounds("" if None in path else str(path[-1]), value, len(path) == 1)
-    if bounds is None:
-        return None
-    least, most = key_bounds(column, path)
-    return Parameter(
-        value, max(bounds[0], least), min(bounds[1], most), unit_of(column, path), name
-    )
+def _spring(item: Any) -> Any:
+    """Return the spring of an item, which for a layer follows its distance."""
+    return item[-1] if isinstance(item, tuple) else item
 
 
-def unit_of(column: Structure, path: ParameterPath) -> str:
-    """Return the unit of the parameter at a path; empty for a factor."""
-    unit = str(_key(column, path).get("unit") or "")
-    # Layers of a joint are normal springs.
-    group = next((_UNITS[str(step)] for step in path if step in _UNITS), {})
-    return (_NORMAL if "layers" in path else group).get(unit, unit)
-
-
-def key_bounds(column: Structure, path: ParameterPath) -> tuple[float, float]:
-    """Return the least and the largest value that the key of a parameter takes."""
-    key = _key(column, path)
-    least, most = key.get("least"), key.get("most")
-    return (-math.inf if least is None else float(least), math.inf if most is None else float(most))
-
-
-def _key(column: Structure, path: ParameterPath) -> dict[str, Any]:
-    """Return the key of the parameter at a path, as `rbsdem keys` has it; empty for a factor."""
-    if None in path:
-        return {}
-    rule = ""
-    for place in range(1, len(path)):
-        rule = getattr(_get(column, path[:place]), "rule", rule)
-    group = "member_kind" if isinstance(column, Frame) else "column"
-    return _keys_of(rule, group).get(str(path[-1]), {})
+def _of_item(names: list[str], place: int) -> list[str]:
+    return [f"{name}[{index}]" for index in (place, "*") for name in names]
 
 
 @cache
@@ -122,274 +267,44 @@ def _keys_of(rule: str, group: str) -> dict[str, dict[str, Any]]:
     return {key["name"]: key for key in keys}
 
 
-def default_bounds(name: str, value: float, measured: bool) -> tuple[float, float] | None:
-    """Return the range in which a parameter is searched; None if it must be given."""
-    if name in LIMITS:
-        low, high = LIMITS[name]
-        return min(low, value), max(high, value)
-    if value == 0:
-        return None
-    if measured:
-        ends = value * (1 - MEASURED), value * (1 + MEASURED)
-    else:
-        ends = 0.0 if name in AFTER_YIELD else value / REACH, value * REACH
-    return min(ends), max(ends)
+def with_values(structure: Structure, values: Mapping[str, float]) -> Structure:
+    """Return the structure with other parameters, or raise `InputError` if it refuses them.
 
-
-def value_at(column: Structure, path: ParameterPath) -> float:
-    """Return the parameter at a path; 1 for a factor on several."""
-    return 1.0 if None in path else _get(column, path)
-
-
-def with_values(
-    column: Structure, paths: Mapping[str, ParameterPath], values: Mapping[str, float]
-) -> Structure:
-    """Return the structure with other parameters at some paths.
-
-    Raises
-    ------
-    InputError
-        If it refuses them.
+    Springs check their parameters together, so all parameters of one spring change at once.
     """
-    # Springs check their parameters together, so all parameters of one spring change at once.
-    changes: dict[str, dict[ParameterPath, float]] = {}
-    for name, value in values.items():
-        path = paths[name]
-        changes.setdefault(str(path[0]), {})[path[1:]] = value
-    if isinstance(column, Frame):
-        kinds = column.named_kinds
-        return column.with_kinds(
-            {name: _changed(kinds[name], own) for name, own in changes.items()}
-        )
-    parts: Any = {
-        name: _changed_part(column, getattr(column, name), own) for name, own in changes.items()
-    }
-    return replace(column, **parts)
+    if isinstance(structure, Frame):
+        kinds = structure.named_kinds.items()
+        changed = {name: _changed(kind, [name], values) for name, kind in kinds}
+        return structure.with_kinds({name: changed[name] for name, kind in kinds
+                                     if changed[name] is not kind})  # fmt: skip
+    parts: dict[str, Any] = {name: values[name] for name in _PLAIN if name in values}
+    for kind in _UNITS:
+        part = getattr(structure, kind)
+        if isinstance(part, Spring) and any(name.startswith(f"{kind}[") for name in values):
+            part = (_changed(part, [kind], values),) * structure.joint_numbers[-1]
+        if part is not None:
+            parts[kind] = _changed(part, [kind], values)
+    return replace(structure, **parts)
 
 
-def _changed_part(column: Column, part: Any, changes: dict[ParameterPath, float]) -> Any:
-    """Change a field of the column; joints get springs of their own where they differ."""
-    single = {
-        path: value for path, value in changes.items() if path and not isinstance(path[0], str)
-    }
-    if isinstance(part, Spring) and single:
-        common = {path: value for path, value in changes.items() if path not in single}
-        spring = _changed(part, common) if common else part
-        return _changed((spring,) * column.joint_numbers[-1], single)
-    return _changed(part, changes)
-
-
-def _below(part: Any) -> Iterator[tuple[str, ParameterPath]]:
-    """Yield names and paths of all parameters in a spring, or in several.
-
-    They are ``.k_y`` in one spring, ``[0].k_y`` in one of several, and ``[*].k_y`` in all that have
-    a k_y.
-    """
+def _changed(part: Any, names: list[str], values: Mapping[str, float]) -> Any:
+    """Return a spring, or several, with other parameters; itself if nothing changes."""
     if isinstance(part, tuple):
-        several = [list(_below(_spring(item))) for item in part]
-        for place, parameters in enumerate(several):
-            yield from ((f"[{place}]{name}", (place, *path)) for name, path in parameters)
-        every = {name: path for parameters in several for name, path in parameters}
-        yield from ((f"[*]{name}", (None, *path)) for name, path in every.items())
-    elif is_dataclass(part):
-        for field in fields(part):
-            value = getattr(part, field.name) if field.init else None
-            if isinstance(value, float):
-                yield f".{field.name}", (field.name,)
-            elif is_dataclass(value) or isinstance(value, tuple):
-                yield from (
-                    (f".{field.name}{name}", (field.name, *path)) for name, path in _below(value)
-                )
-
-
-def _spring(item: Any) -> Any:
-    """Return the spring of an item, which for a layer follows its distance."""
-    return item[-1] if isinstance(item, tuple) else item
-
-
-def _get(part: Any, path: ParameterPath) -> Any:
-    if isinstance(part, Frame):
-        part, path = part.named_kinds[str(path[0])], path[1:]
-    for step in path:
-        if isinstance(step, int):
-            # One spring for all joints is the spring of each of them.
-            part = part if isinstance(part, Spring) else _spring(part[step])
-        else:
-            part = getattr(part, str(step), None)
-    return part
-
-
-def _changed(part: Any, changes: Mapping[ParameterPath, float]) -> Any:
-    """Return a copy of a spring, or of several, with the parameters at some paths replaced."""
-    if () in changes:
-        return changes[()]
-    if isinstance(part, tuple):
-        return tuple(_changed_item(item, place, changes) for place, item in enumerate(part))
-    steps: dict[str, dict[ParameterPath, float]] = {}
-    for path, value in changes.items():
-        steps.setdefault(str(path[0]), {})[path[1:]] = value
-    return replace(
-        part, **{step: _changed(getattr(part, step), rest) for step, rest in steps.items()}
-    )
-
-
-def _changed_item(item: Any, place: int, changes: Mapping[ParameterPath, float]) -> Any:
-    """Change one of several springs: first its own parameters, then factors on all springs."""
-    spring = _spring(item)
-    own = {path[1:]: value for path, value in changes.items() if path[0] == place}
-    for path, factor in changes.items():
-        rest = path[1:]
-        if path[0] is None and None in rest:
-            own[rest] = own.get(rest, 1.0) * factor
-        elif path[0] is None:
-            value = own.get(rest, _get(spring, rest))
-            if value is not None:
-                own[rest] = value * factor
-    if not own:
-        return item
-    changed = _changed(spring, own)
-    return (*item[:-1], changed) if isinstance(item, tuple) else changed
-
-
-#: Largest number of names in a message.
-_MANY = 30
-
-
-class Parameters:
-    """The parameters of one column: those that it offers, or otherwise the paths in it."""
-
-    def __init__(self, column: Structure) -> None:
-        self.offered = isinstance(getattr(column, "parameters", None), Mapping)
-        if not self.offered:
-            checked_structure(column, "calibrate: ")
-        self.column: Any = column  # with `parameters`, if it offers them
-        self.paths = {} if self.offered else paths(column)
-
-    @property
-    def names(self) -> list[str]:
-        """Names of all parameters."""
-        return list(self.column.parameters) if self.offered else list(self.paths)
-
-    def known(self) -> dict[str, Parameter | None]:
-        """Return all parameters by name; None for those whose bounds must be given."""
-        if self.offered:
-            return dict(self.column.parameters)
-        return {name: parameter(self.column, name, path) for name, path in self.paths.items()}
-
-    def start(self, name: str) -> float:
-        """Return the value of a parameter in the column."""
-        if self.offered:
-            return float(self.column.parameters[name].value)
-        return value_at(self.column, self.paths[name])
-
-    def build(self, values: Mapping[str, float]) -> Structure:
-        """Return the structure with other values, or raise `InputError` if it is refused."""
-        if self.offered:
-            changed: Structure = self.column.with_parameters(**values)
-            return changed
-        return with_values(self.column, self.paths, values)
-
-
-def free_parameters(
-    parameters: Parameters, free: Sequence[str], bounds: Mapping[str, Sequence[float]] | None
-) -> dict[str, Parameter]:
-    """Return the parameters to fit, in the order of `free`, with their bounds.
-
-    Raises
-    ------
-    InputError
-        If names are unknown or repeated, or bounds are wrong.
-    """
-    names = _names(parameters, free)
-    given = {name: _pair(name, pair) for name, pair in _mapping(bounds).items()}
-    for name in given:
-        if name not in names:
-            raise InputError(f"calibrate: bounds: {name!r} is not in free ({', '.join(names)})")
-    known = parameters.known()
-    chosen = {}
-    for name in names:
-        one = known[name]
-        if name in given:
-            one = _within(parameters, name, one, given[name])
-        if one is None:
-            raise InputError(
-                f"calibrate: {name} = {parameters.start(name):g} has no default bounds; give "
-                f"bounds={{{name!r}: (low, high)}}"
-            )
-        chosen[name] = one
-    return chosen
-
-
-def _names(parameters: Parameters, free: Any) -> list[str]:
-    if isinstance(free, str) or not isinstance(free, Sequence | Mapping | set):
-        raise InputError(f"calibrate: free = {free!r} must be a list of names")
-    names = list(free)
-    if not names:
-        raise InputError(f"calibrate: free is empty; it names {_list(parameters.names)}")
-    for name in names:
-        if name not in parameters.names:
-            raise _unknown(name, parameters)
-        if names.count(name) > 1:
-            raise InputError(f"calibrate: free: {name!r} comes twice")
-    return names
-
-
-def _unknown(name: Any, parameters: Parameters) -> InputError:
-    near = get_close_matches(str(name), parameters.names, n=1, cutoff=0.0)
-    if not near:
-        return InputError(f"calibrate: free: {name!r}: this column has no parameters to fit")
-    return InputError(
-        f"calibrate: free: {name!r} is not a parameter of this column; did you mean {near[0]!r}? "
-        f"It has {_list(parameters.names)}"
-    )
-
-
-def _list(names: Sequence[str]) -> str:
-    """Return the names as a text; if there are too many, only the first."""
-    if len(names) <= _MANY:
-        return ", ".join(names)
-    first = ", ".join(names[:_MANY])
-    return f"{first} and {len(names) - _MANY} more (rbsdem.calibration.free_names lists them)"
-
-
-def _mapping(bounds: Any) -> Mapping[str, Sequence[float]]:
-    if bounds is None:
-        return {}
-    if not isinstance(bounds, Mapping):
-        raise InputError(f"calibrate: bounds = {bounds!r} must be a mapping of name to (low, high)")
-    return bounds
-
-
-def _pair(name: str, pair: Any) -> tuple[float, float]:
-    try:
-        low, high = pair
-    except (TypeError, ValueError):
-        raise InputError(f"calibrate: bounds of {name} = {pair!r} must be (low, high)") from None
-    about = f"calibrate: bounds of {name}"
-    return _arguments.number(low, about), _arguments.number(high, about)
-
-
-def _within(
-    parameters: Parameters, name: str, one: Parameter | None, pair: tuple[float, float]
-) -> Parameter:
-    start = parameters.start(name)
-    if pair[0] < pair[1] and not pair[0] <= start <= pair[1]:
-        raise InputError(
-            f"calibrate: bounds of {name}: {pair[0]:g} to {pair[1]:g} leave out the start "
-            f"{start:g}; move the bounds, or start from another column"
+        items = [(item, _changed(_spring(item), _of_item(names, place), values))
+                 for place, item in enumerate(part)]  # fmt: skip
+        if all(spring is _spring(item) for item, spring in items):
+            return part
+        return tuple(
+            (*item[:-1], spring) if isinstance(item, tuple) else spring for item, spring in items
         )
-    if not parameters.offered:
-        least, most = key_bounds(parameters.column, parameters.paths[name])
-        if pair[0] < least or pair[1] > most:
-            side = f"below {least:g}" if pair[0] < least else f"above {most:g}"
-            raise InputError(
-                f"calibrate: bounds of {name}: {pair[0]:g} to {pair[1]:g} go {side}, which the "
-                "column refuses; move the bound"
-            )
-    try:
-        if one is None:
-            unit = unit_of(parameters.column, parameters.paths[name])
-            return Parameter(start, *pair, unit, name)
-        return replace(one, low=pair[0], high=pair[1])
-    except InputError as error:
-        raise InputError(f"calibrate: bounds of {name}: {error}") from None
+    if is_dataclass(part) and not isinstance(part, type):
+        changes = {}
+        for each in fields(part):
+            old = getattr(part, each.name) if each.init else None
+            new = _changed(old, [f"{name}.{each.name}" for name in names], values)
+            if new is not old:
+                changes[each.name] = new
+        return replace(part, **changes) if changes else part
+    if not isinstance(part, float) or not any(name in values for name in names):
+        return part
+    return values.get(names[0], part) * math.prod(values.get(name, 1.0) for name in names[1:])

@@ -19,7 +19,7 @@ import numpy as np
 from rbsdem import _arguments, _core, _package
 from rbsdem._files import Tabular
 from rbsdem._tables import FORCES, LENGTHS, NumberTable, read_table, to_si
-from rbsdem._types import Array, ArrayLike, NDArray
+from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.metrics import Loop
 from rbsdem.errors import InputError
 
@@ -232,7 +232,7 @@ def measured_test(
 
 @dataclass(frozen=True, repr=False)
 class PeerTest(Tabular):
-    """A measured force-displacement history.
+    """A measured force-displacement history, or the points at which its displacement turns back.
 
     Attributes
     ----------
@@ -242,6 +242,8 @@ class PeerTest(Tabular):
         Displacement of the top of the equivalent cantilever [m].
     force : ndarray, shape (m,)
         Force column of the file [N]; the P-Delta code of the test says what it means.
+    source : str
+        Note on the source with the reports to cite, of reversal points that come with rbsdem.
     """
 
     _columns = ("displacement m", "force N")
@@ -249,6 +251,7 @@ class PeerTest(Tabular):
     name: str
     displacement: Array
     force: Array
+    source: str = ""
 
 
 def read_peer(path: str | os.PathLike[str], *, units: tuple[str, str] | None = None) -> PeerTest:
@@ -299,31 +302,6 @@ HISTORY_FILES = {
 """File names of the history of each column: a csv, and the database's own text file."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Reversals:
-    """Points of a test at which the displacement turns back, with the first and the last one.
-
-    Attributes
-    ----------
-    key : str
-        Key of the column, as in `rbsdem.peer.paper_columns`.
-    name : str
-        Name of the specimen.
-    displacement : ndarray, shape (n,)
-        Displacement of the top of the equivalent cantilever [m].
-    force : ndarray, shape (n,)
-        Net horizontal force at these points [N]; the largest force of a test lies between them.
-    source : str
-        Note on the source, with the reports to cite.
-    """
-
-    key: str
-    name: str
-    displacement: NDArray[np.float64]
-    force: NDArray[np.float64]
-    source: str
-
-
 def find_history(
     key: str | os.PathLike[str], folder: str | os.PathLike[str] | None = None
 ) -> Path | None:
@@ -364,7 +342,7 @@ def find_history(
     return None
 
 
-def shipped_reversals(key: str) -> Reversals:
+def shipped_reversals(key: str) -> PeerTest:
     """Read the reversal points of a test that come with rbsdem.
 
     Parameters
@@ -374,8 +352,10 @@ def shipped_reversals(key: str) -> Reversals:
 
     Returns
     -------
-    Reversals
-        About 20 points in the order of the test, SI units.
+    PeerTest
+        About 20 points in the order of the test, the first and the last among them: displacement of
+        the top of the equivalent cantilever, net horizontal force. The largest force of a test lies
+        between them.
 
     Raises
     ------
@@ -386,16 +366,9 @@ def shipped_reversals(key: str) -> Reversals:
         raise InputError(f"no reversal points for {key!r}; there are {', '.join(HISTORY_FILES)}")
     name = f"reversals_{key}.csv"
     rows, notes = _package.rows(name), _package.notes(name)
-    displacement, force = (
-        np.array([float(row[column]) for row in rows]) for column in ("displacement_mm", "force_kN")
-    )
-    return Reversals(
-        key=key,
-        name=notes[0].partition(":")[0],
-        displacement=displacement / 1000,
-        force=force * 1000,
-        source="\n".join(notes),
-    )
+    displacement = np.array([float(row["displacement_mm"]) for row in rows]) / 1000
+    force = np.array([float(row["force_kN"]) for row in rows]) * 1000
+    return PeerTest(notes[0].partition(":")[0], displacement, force, "\n".join(notes))
 
 
 def measured_loops() -> dict[str, Loop]:
