@@ -76,6 +76,28 @@ def lanes(repeats: int, runs: int) -> list[Row]:
     return rows
 
 
+def default(runs: int) -> list[Row]:
+    """Time runs without settings, and compare their errors with those of "auto"."""
+    motion = record_20_s()
+    given: dict[str, Any] = {"scales": np.linspace(0.2, 1.0, runs), "jobs": 1}
+    rows = []
+    paper = rbsdem.peer.paper_columns("pdelta")["soesianawati_1"]
+    for name, column in {"paper's column": paper, "with the mass of its load": pier()}.items():
+        step = rbsdem.ensemble(column, motion).measures["time_step"][0]
+        exact = {"method": "rk4", "events": "located", "dt": step / 8}
+        reference = rbsdem.ensemble(column, motion, scales=given["scales"][::8], jobs=2, **exact)
+        for method, how in {"no settings": {}, "auto": {"method": "auto"}}.items():
+            times, found = processor(
+                lambda c=column, h=how: rbsdem.ensemble(c, motion, **given, **h), 1
+            )
+            row = Row(f"{name}, {method}", "ms/run", 0.6, [1e3 * times[0] / runs])
+            known = reference.measures["peak_drift"]
+            error = np.abs(found.measures["peak_drift"][::8] / known - 1)
+            row.note = f"peak drift off by {np.median(error):.0e} (median), {error.max():.0e}"
+            rows.append(row)
+    return rows
+
+
 def damped_lanes(repeats: int, runs: int) -> list[Row]:
     """Time lanes of damped columns, over single runs."""
     time_, motion = record_20_s()
@@ -184,9 +206,13 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer repeats, fewer runs")
+    parser.add_argument("--default", action="store_true", help="runs without settings alone")
     parser.add_argument("--dask", action="store_true", help="a Dask cluster too")
     given = parser.parse_args()
     repeats = 2 if given.quick else 5
+    if given.default:
+        show({"No settings, one thread": default(64)})
+        return
     show(
         {
             "Lanes, one thread": lanes(repeats, 320),

@@ -394,8 +394,9 @@ def ensemble(
     allow_partial : bool, optional
         Return the runs that were finished if Ctrl-C ends the work, the others with the status "".
     **solver
-        Settings of the method, see `rbsdem.Solver`. Without a method "auto" chooses for each column
-        and motion; a run that takes longer than `max_seconds` has failed.
+        Settings of the method, see `rbsdem.Solver`. Without any "rk4", if all runs go side by side
+        with it, in lanes: its errors are those of "auto" (docs/ensembles.md). Else "auto" chooses
+        for each column and motion. A run that takes longer than `max_seconds` has failed.
 
     Returns
     -------
@@ -411,7 +412,7 @@ def ensemble(
         Before the first run, with a line for everything that is wrong.
     """
     begin = time.perf_counter()
-    settings = {"method": "auto"} | checked_solver(solver, "ensemble")
+    settings: dict[str, Any] = checked_solver(solver, "ensemble")
     if collapse_drift is not None:
         settings["collapse_drift"] = collapse_drift
     settings = {name: _plain(value) for name, value in settings.items()}
@@ -443,9 +444,15 @@ def ensemble(
     column, motion, _ = np.unravel_index(wanted, full.shape)
     runs = column.astype(np.int32), motion.astype(np.int32), full.ravel()[wanted]
     asked = functions, inputs.limit_states_among(names), inputs.storeys_among(names)
-    plan = Plan(column_items, motion_items, settings, *runs, *asked, before)
-    seconds, in_lanes, wrong = expected(plan)
-    each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
+    # Without settings the fast way, if it can be taken by all.
+    methods = [{}] if "method" in settings else [{"method": "auto"}]
+    methods = methods if solver else [{"method": "rk4"}, *methods]
+    for method in methods:
+        plan = Plan(column_items, motion_items, method | settings, *runs, *asked, before)
+        seconds, in_lanes, wrong = expected(plan)
+        each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
+        if lanes.all() and not wrong:
+            break
     _arguments.raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
     kept = None
     if store is not None:
@@ -457,7 +464,7 @@ def ensemble(
     whole = Ensemble(
         dict(zip(column_names, column_items, strict=True)),
         {item.name: item for item in motion_items},
-        settings,
+        plan.settings,
         {name: state for name, state in states if state.size},
         plan.column,
         plan.motion,
