@@ -129,6 +129,8 @@ class MethodRun:
         reference would see; nan if there is no finer one.
     pareto : bool
         Whether no other setting is both faster and more accurate.
+    solution : Answer or None
+        The answer, if there is one.
     """
 
     setting: Setting
@@ -144,19 +146,13 @@ class MethodRun:
     error: float = math.nan
     move: float = math.nan
     pareto: bool = False
+    solution: Answer | None = None
 
-
-@dataclass(frozen=True, eq=False)
-class SolvedRun(MethodRun):
-    """A setting that has an answer.
-
-    Attributes
-    ----------
-    answer : Answer
-        Its answer.
-    """
-
-    answer: Answer = field(kw_only=True)
+    @property
+    def answer(self) -> Answer:
+        """The answer of a setting that has one."""
+        assert self.solution is not None
+        return self.solution
 
 
 @dataclass(frozen=True)
@@ -286,7 +282,7 @@ class StudyCase:
             taken = float(np.median(times or [clock.perf_counter() - begin]))
             return MethodRun(setting, taken, 1, "failed", str(error))
         median, reason = float(np.median(times)), answer.reason
-        return SolvedRun(setting, median, len(times), answer.status, reason, answer=answer)
+        return MethodRun(setting, median, len(times), answer.status, reason, solution=answer)
 
 
 def study_case(
@@ -612,9 +608,9 @@ class MethodRuns:
     runs: list[MethodRun] = field(default_factory=list)
 
     @property
-    def solved(self) -> list[SolvedRun]:
+    def solved(self) -> list[MethodRun]:
         """The runs that have an answer."""
-        return [run for run in self.runs if isinstance(run, SolvedRun)]
+        return [run for run in self.runs if run.solution]
 
     def predicted(self, last: MethodRun | None, setting: Setting) -> float:
         """Return an estimate of the wall time of a setting [s], if possible from a coarser run."""

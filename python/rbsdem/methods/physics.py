@@ -21,9 +21,9 @@ from rbsdem.methods.ladder import (
     LEVELS,
     VERTICAL,
     Budget,
+    MethodRun,
     MethodRuns,
     Setting,
-    SolvedRun,
     StudyCase,
     too_expensive,
 )
@@ -115,13 +115,13 @@ class _Ladder:
             return
         self._trials.told(f"reference: {self.next}")
         run = self._trials.case.run(self.next)
-        if not isinstance(run, SolvedRun):
+        if not run.solution:
             self.trouble = run.reason
             return
         self.moved = self.apart(run)
         self.run, self.next = run, finer(self.next)
 
-    def apart(self, other: SolvedRun | None) -> float:
+    def apart(self, other: MethodRun | None) -> float:
         """Return how far the answer of another run is from the finest one; infinite without it."""
         if self.run is None or other is None:
             return math.inf
@@ -197,7 +197,7 @@ def _bring_together(pair: list[_Ladder], budget: Budget, share: float, wanted: f
         apart = min(apart, now)
 
 
-def compare(first: SolvedRun, second: SolvedRun, wanted: float, warning: str) -> Reference:
+def compare(first: MethodRun, second: MethodRun, wanted: float, warning: str) -> Reference:
     """Return the reference that two runs make."""
     apart = errors_of(second.answer, first.answer)
     parts = [warning] if warning else []
@@ -230,11 +230,11 @@ def _static_reference(trials: MethodRuns, wanted: float) -> Reference | str:
     case = trials.case
     level = case.column.kinematics
     trials.told("reference: static")
-    runs: list[SolvedRun] = []
+    runs: list[MethodRun] = []
     trouble = ""
     for parts in (16, 4, 1) if level == "finite" else (1, 4):
         run = case.run(Setting("static", level, parts=parts))
-        if not isinstance(run, SolvedRun):
+        if not run.solution:
             trouble = run.reason
             continue
         back = _inverse(case, run.answer, parts)
@@ -247,7 +247,7 @@ def _static_reference(trials: MethodRuns, wanted: float) -> Reference | str:
     return compare(runs[0], runs[1], wanted, warning)
 
 
-def _inverse(case: StudyCase, answer: Answer, parts: int) -> SolvedRun | None:
+def _inverse(case: StudyCase, answer: Answer, parts: int) -> MethodRun | None:
     """Return the path driven by the response, its answer in what was driven first."""
     name, path = next(iter(case.loads.items()))
     other = "force" if name == "displacement" else "displacement"
@@ -260,13 +260,13 @@ def _inverse(case: StudyCase, answer: Answer, parts: int) -> SolvedRun | None:
         back = inverse.run(Setting("static", case.column.kinematics, parts=parts))
     except RbsdemError:
         return None
-    if not isinstance(back, SolvedRun) or back.answer.response.size != rows:
+    if not back.solution or back.answer.response.size != rows:
         return None
     # The difference from what was driven, on the scale of the response.
     lost = (back.answer.response - path[:rows]) / max(np.abs(path).max(), 1e-300)
     setting = replace(back.setting, method=f"static driven by {other}")
     answer = replace(back.answer, response=answer.response + lost * answer.peak)
-    return replace(back, setting=setting, repeats=1, reason="", answer=answer)
+    return replace(back, setting=setting, repeats=1, reason="", solution=answer)
 
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
@@ -470,7 +470,7 @@ def find_physics(
     return Physics(tuple(effects), str(base.setting), resolution, limit)
 
 
-def _base(trials: MethodRuns, reference: Reference | None, seconds: float) -> SolvedRun | str:
+def _base(trials: MethodRuns, reference: Reference | None, seconds: float) -> MethodRun | str:
     """Return the run of the model as given, with which the others are compared.
 
     A fine run if the budget allows it, else the most accurate one that it allows. A method that
@@ -484,7 +484,7 @@ def _base(trials: MethodRuns, reference: Reference | None, seconds: float) -> So
         fine = Setting("rk45", level, tolerance=FINE)
     if trials.predicted(None, fine) < seconds:
         run = case.run(fine, REPEATS, seconds=seconds / REPEATS)
-        if isinstance(run, SolvedRun):
+        if run.solution:
             return run
     done = [r for r in trials.solved if r.setting.kinematics == level and r.seconds < seconds]
     # An implicit step suits any variant; a fixed explicit step may be beyond the limit.
@@ -498,7 +498,7 @@ def _base(trials: MethodRuns, reference: Reference | None, seconds: float) -> So
     return "the budget allows no setting for the comparisons; give more of it"
 
 
-def _effect(trials: MethodRuns, variant: Variant, base: SolvedRun, tolerance: float) -> Effect:
+def _effect(trials: MethodRuns, variant: Variant, base: MethodRun, tolerance: float) -> Effect:
     """Return the effect of one change of the model."""
     try:
         with notes_off():
@@ -519,12 +519,12 @@ def _effect(trials: MethodRuns, variant: Variant, base: SolvedRun, tolerance: fl
         # The step is beyond the stability limit of this model.
         setting = dataclasses.replace(setting, dt=setting.dt / 2)
         run = other.run(setting, REPEATS, column, base.seconds)
-    if not isinstance(run, SolvedRun):
+    if not run.solution:
         return Effect(variant.name, status=run.status, reason=run.reason)
     return _compare(variant.name, run, base, tolerance)
 
 
-def _compare(name: str, run: SolvedRun, base: SolvedRun, tolerance: float) -> Effect:
+def _compare(name: str, run: MethodRun, base: MethodRun, tolerance: float) -> Effect:
     old, new = base.answer, run.answer
 
     def change(quantity: str, scale: float) -> float:

@@ -15,7 +15,6 @@ from rbsdem.methods.ladder import (
     Budget,
     MethodRun,
     MethodRuns,
-    SolvedRun,
     StudyCase,
     checked_methods,
     ladders,
@@ -87,7 +86,7 @@ def make_rows(runs: Sequence[MethodRun], reference: Reference | None) -> tuple[M
     rows = []
     for run in runs:
         found: dict[str, float] = {}
-        if isinstance(run, SolvedRun):
+        if run.solution:
             finer = _finer(runs, run)
             if finer is not None:
                 found["move"] = errors_of(run.answer, finer.answer).largest
@@ -111,12 +110,12 @@ def make_rows(runs: Sequence[MethodRun], reference: Reference | None) -> tuple[M
     return tuple(replace(row, pareto=row.setting in front) for row in rows)
 
 
-def _finer(runs: Sequence[MethodRun], run: SolvedRun) -> SolvedRun | None:
+def _finer(runs: Sequence[MethodRun], run: MethodRun) -> MethodRun | None:
     """Return the next finer run of a family that has an answer."""
     for other in runs[runs.index(run) + 1 :]:
         if other.setting.family != run.setting.family:
             return None
-        if isinstance(other, SolvedRun):
+        if other.solution:
             return other
     return None
 
@@ -134,8 +133,8 @@ def cheapest(rows: Sequence[MethodRun], tolerance: float) -> MethodRun | None:
 def choose(rows: Sequence[MethodRun], tolerance: float) -> Choice:
     """Return the cheapest row within a tolerance, and the change by the next finer one."""
     row = cheapest(rows, tolerance)
-    finer = _finer(rows, row) if isinstance(row, SolvedRun) else None
-    if finer is None or not isinstance(row, SolvedRun):
+    finer = _finer(rows, row) if row else None
+    if finer is None or row is None:
         return Choice(tolerance, row)
     return Choice(tolerance, row, finer, errors_of(row.answer, finer.answer))
 
@@ -330,7 +329,7 @@ def _check(tolerance: float | None, budget: float, digits: float, repeats: int) 
 
 def _need_one(runs: Sequence[MethodRun]) -> None:
     """Raise the error of the last run if no setting has an answer."""
-    if any(isinstance(run, SolvedRun) for run in runs):
+    if any(run.solution for run in runs):
         return
     for status, error in (("failed", SolveError), ("refused", InputError)):
         for run in reversed(runs):

@@ -142,7 +142,7 @@ def _reasons(rows: Sequence[MethodRun]) -> list[str]:
 
 def report(study: MethodStudy, title: str) -> None:
     """Print the whole study."""
-    out = console(132)
+    out = console(160)
 
     def say(text: str = "") -> None:
         out.print(text, markup=False, soft_wrap=not out.is_terminal)

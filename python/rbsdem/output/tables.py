@@ -80,7 +80,9 @@ def table(
         def __rich_console__(self, console: Any, options: Any) -> Any:
             widths, frame = list(widest), 3 * len(widest)
             while sum(widths) + frame > options.max_width and widths != least:
-                spare = [a - b for a, b in zip(widths, least, strict=True)]
+                # Headings of numbers break before texts are cut.
+                triples = zip(widths, least, are_numbers, strict=True)
+                spare = [(a > b and number, a - b) for a, b, number in triples]
                 widths[spare.index(max(spare))] -= 1
             for column, width in zip(self.columns, widths, strict=True):
                 column.width = width
@@ -97,7 +99,7 @@ def table(
 
     made = Printed(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
     columns = cells(record)
-    widest, least = [], []
+    widest, least, are_numbers = [], [], [numbers for _, numbers, _ in columns]
     for heading, numbers, texts in columns:
         width, figures = (max(map(len, [*words, ""])) for words in (heading.splitlines(), texts))
         widest.append(max(width, figures) if numbers else min(max(width, figures), _WIDEST))
