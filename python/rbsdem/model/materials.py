@@ -127,7 +127,9 @@ class Steel:
         if given(self.fu) is None:
             object.__setattr__(self, "fu", Derived(1.5 * self.fy))
         if given(self.eps_sh) is None:
-            object.__setattr__(self, "eps_sh", Derived(max(0.007, self.fy / self.es)))
+            # A modulus that is not positive is refused below.
+            strain = self.fy / self.es if self.es > 0.0 else 0.0
+            object.__setattr__(self, "eps_sh", Derived(max(0.007, strain)))
         _core.check_law("steel_response", *self.statement())
 
     def statement(self, number: int | None = None) -> _core.Statement:
