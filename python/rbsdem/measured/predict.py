@@ -29,10 +29,19 @@ from rbsdem.measured.specimens import (
 from rbsdem.measured.specimens import column as column_of
 from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
-from rbsdem.run.bands import Band, features_of, has_bands, numbers
+from rbsdem.run.bands import (
+    Band,
+    factored_force,
+    features_of,
+    has_bands,
+    numbers,
+    scatter_of_tests,
+)
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.result import Result, cyclic
+from rbsdem.run.sisters import Learned, Loop, learn
 from rbsdem.section.columns import DEFAULT, model_name
+from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import parameters
 
 Model: TypeAlias = str | Callable[[Specimen], Column]
@@ -177,6 +186,7 @@ def predict(
     samples: int = 16,
     displacement: ArrayLike | None = None,
     near: Tests = (),
+    given: Iterable[Specimen] = (),
     limit_states: bool = False,
     **options: Any,
 ) -> Prediction | list[Prediction]:
@@ -202,8 +212,14 @@ def predict(
     near : path-like, or iterable of Specimen or Prediction, optional
         Tests, or their folder, of which the five that are most like each column stand beside it.
         Those that are not predicted yet are predicted by the same model.
+    given : iterable of Specimen, optional
+        Tests of the same laboratory and series with their histories. What they say of its strength,
+        stiffness and degradation moves the prediction (a Bayes step with the scatter of the bands,
+        `rbsdem.run.sisters`) and makes a band narrower; a test that is predicted itself is left out
+        of what is given for it. For the layered model.
     limit_states : bool, optional
-        With the drifts at which limit states are reached, see `rbsdem.Result.limit_states`.
+        With the drifts at which limit states are reached, see `rbsdem.Result.limit_states`; not
+        with `given`.
     **options
         Passed to `rbsdem.peer.column`, such as ``n=4``.
 
@@ -228,6 +244,12 @@ def predict(
     version = (options.get("model_parameters") or parameters()).version
     if bands and (model != "layered" or not has_bands(version)):
         raise InputError(f"bands = True: there are bands of 'layered' alone, and none of {name!r}")
+    sisters = [checked_specimen(sister) for sister in given]
+    if sisters and (model != "layered" or not has_bands(version)):
+        raise InputError(f"given: tests move predictions of 'layered' alone, not of {name!r}")
+    if sisters and limit_states:
+        raise InputError("limit_states = True: they are those of the drawing; leave out given")
+    loops = {sister: _loop(sister, options) for sister in sisters}
     path = None if displacement is None else _path(displacement)
     others: Sequence[Specimen | Prediction]
     others = read_specimens(near).with_history() if isinstance(near, _PATH) else list(near)
@@ -239,9 +261,15 @@ def predict(
         if column is None or row[0].status == "failed":
             return row[0]
         changes: dict[str, Any] = {}
+        own = [loop for sister, loop in loops.items() if sister != specimen]
+        learned = learn(own, scatter_of_tests()) if own else None
+        if learned is not None:
+            changes = _moved(row[0], column, learned)
         if bands:
             with unwarned():
-                changes["band"] = band_of(column, row[0].displacement, samples=samples)
+                changes["band"] = band_of(
+                    column, row[0].displacement, samples=samples, learned=learned
+                )
         if others:
             changes["nearest"] = _neighbours(specimen, others, known, model, options)
         return replace(row[0], **changes)
@@ -261,6 +289,27 @@ def predict(
 
 
 _PATH = (str, os.PathLike)
+
+
+def _loop(sister: Specimen, options: dict[str, Any]) -> Loop:
+    """Return a given test with its column."""
+    try:
+        test = sister.test()
+        with unwarned():
+            column = column_of(sister, "layered", **options)
+    except RbsdemError as error:
+        raise InputError(f"given: {sister.name}: {error}") from error
+    return Loop(column, test.displacement, test.force)
+
+
+def _moved(row: Prediction, column: LayeredColumn, learned: Learned) -> dict[str, Any]:
+    """Return what changes in a row by what tests of the laboratory say."""
+    force = factored_force(column, row.displacement, learned.logs)
+    tests = "1 test" if learned.tests == 1 else f"{learned.tests} tests"
+    changes: dict[str, Any] = {"force": force, "model": f"{row.model}, {tests} given"}
+    if row.comparison is not None:
+        changes["comparison"] = compare((row.displacement, force), row.specimen.test())
+    return changes
 
 
 def _path(displacement: ArrayLike) -> Array:

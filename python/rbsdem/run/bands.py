@@ -17,7 +17,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -110,6 +110,18 @@ def scatter_of_tests() -> Scatter:
 
 def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
+
+
+class HasLearned(Protocol):
+    """What tests say of a laboratory, as `rbsdem.run.sisters.Learned`."""
+
+    @property
+    def logs(self) -> Array:
+        """Logarithms of its factors of strength, stiffness and degradation, shape (3,)."""
+
+    @property
+    def left(self) -> Array:
+        """Standard deviations of them that are left, shape (3,)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,6 +294,7 @@ def band(
     *,
     samples: int = 16,
     scatter: Scatter | None = None,
+    learned: HasLearned | None = None,
 ) -> Band:
     """Predict the force along a path, with the band that holds 80 % of left-out tests.
 
@@ -296,6 +309,8 @@ def band(
         best a power of 2.
     scatter : Scatter, optional
         Another scatter than that of the version.
+    learned : Learned, optional
+        What tests of the laboratory say, by which prediction and band move and the band narrows.
 
     Returns
     -------
@@ -334,13 +349,17 @@ def band(
         raise InputError("band: the displacement does not change; give a path")
     if warnings:
         warn(f"band: {'; '.join(warnings)}")
-    force = path_force(column, d)
-    sampled = sample(column, d, scatter, number)
+    centre, narrower = np.zeros(3), (1.0, 1.0, 1.0)
+    if learned is not None:
+        centre, (scatter, narrower) = learned.logs, _narrowed(scatter, learned.left)
+    force = path_force(column, d) if learned is None else factored_force(column, d, centre)
+    sampled = sample(column, d, scatter, number, centre.tolist())
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
     features = Features(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
     wider, *powers = _beyond(column, scatter)
+    powers = [power * by for power, by in zip(powers, narrower, strict=True)]
     widen = wider * between(scatter.force, features)
     values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
@@ -363,6 +382,20 @@ def band(
     )
 
 
+def _narrowed(scatter: Scatter, left: Array) -> tuple[Scatter, tuple[float, float, float]]:
+    """Return the scatter with what is left of a laboratory's, and the powers of the intervals."""
+    parts = (scatter.strength, scatter.stiffness, scatter.degradation)
+    known = [(float(size), within) for size, (_, within) in zip(left, parts, strict=True)]
+    shares = [
+        math.hypot(*after) / math.hypot(*before) if any(before) else 1.0
+        for before, after in zip(parts, known, strict=True)
+    ]
+    strength, stiffness, degradation = known
+    moved = replace(scatter, strength=strength, stiffness=stiffness, degradation=degradation)
+    # Of largest force, work, drift at loss.
+    return moved, (shares[0], sum(shares) / 3.0, shares[2])
+
+
 def _beyond(column: LayeredColumn, scatter: Scatter) -> tuple[float, ...]:
     """Return by what bands and intervals are wider than inside the range of the tests."""
     if not column.warnings:
@@ -371,7 +404,31 @@ def _beyond(column: LayeredColumn, scatter: Scatter) -> tuple[float, ...]:
     return scatter.small if small else scatter.outside
 
 
-def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number: int) -> Array:
+def factored_force(column: LayeredColumn, displacement: Array, logs: Array) -> Array:
+    """Return the force of a column whose strength, stiffness and degradation have factors [N].
+
+    Parameters
+    ----------
+    column : LayeredColumn
+        The column.
+    displacement : ndarray, shape (m,)
+        The path [m].
+    logs : ndarray, shape (3,)
+        Logarithms of the factors.
+    """
+    strength, stiffness, degradation = np.exp(logs).tolist()
+    other = _degraded(column, degradation)
+    # A column that is softer by a factor is where the other is at a smaller displacement.
+    return np.asarray(strength * path_force(other, displacement * stiffness))
+
+
+def sample(
+    column: LayeredColumn,
+    displacement: Array,
+    scatter: Scatter,
+    number: int,
+    centre: Sequence[float] = (0.0, 0.0, 0.0),
+) -> Array:
     """Return the forces of samples of strength, stiffness and degradation, shape (number, m) [N].
 
     Parameters
@@ -384,6 +441,8 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
         Of a new laboratory: both standard deviations are in it.
     number : int
         How many.
+    centre : sequence of float, optional
+        Logarithms of the three factors, about which the samples are.
     """
     drawing = column._drawing
     for name, made in drawing.made.items():
@@ -395,11 +454,8 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
     sizes = [math.hypot(*two) for two in (scatter.strength, scatter.stiffness, scatter.degradation)]
     rows = np.empty((number, displacement.size))
     for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
-        factors = (math.exp(size * at) for size, at in zip(sizes, point, strict=True))
-        strength, stiffness, degradation = factors
-        other = _degraded(column, degradation)
-        # A column that is softer by a factor is where the other is at a smaller displacement.
-        row[:] = strength * path_force(other, displacement * stiffness)
+        logs = np.array(centre) + np.array(sizes) * np.array(point)
+        row[:] = factored_force(column, displacement, logs)
     return rows
 
 
