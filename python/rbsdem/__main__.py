@@ -29,14 +29,23 @@ def executable() -> str:
     return path
 
 
-def drawn_frame(words: list[str]) -> str:
-    """Return the path of the case of `check` or `modes` if its frame is drawn by sections."""
+#: Groups and keys of a case that Python reads; the executable solves springs.
+_OF_PYTHON = ("&drawing", "&infill_of", "&node_load", "&target", "&assess", "&records")
+_OF_FRAMES = ("live_load", "self_weight", "from_loads")
+
+
+def case_for_python(words: list[str]) -> str:
+    """Return the path of the case of `run`, `check` or `modes` if Python takes part in it."""
     path = next((word for word in words[1:] if os.path.isfile(word)), "")
-    if words[:1] not in (["check"], ["modes"]) or not path:
+    if words[:1] not in (["run"], ["check"], ["modes"]) or not path:
         return ""
+    if any(word.partition("=")[0] == "--report" for word in words):
+        return path
     with open(path, encoding="utf-8", errors="replace") as file:
         text = file.read().lower()
-    return path if "&frame" in text and "&drawing" in text else ""
+    asked = any(name in text for name in _OF_PYTHON[3:])
+    drawn = "&frame" in text and any(name in text for name in (*_OF_PYTHON, *_OF_FRAMES))
+    return path if asked or drawn else ""
 
 
 def main() -> int:
@@ -61,7 +70,7 @@ def main() -> int:
     except FileNotFoundError as error:
         print(error, file=sys.stderr)
         return 2
-    if path := drawn_frame(words):
+    if path := case_for_python(words):
         from rbsdem.cli.columns import on_springs  # noqa: PLC0415
 
         return on_springs(program, words, path)

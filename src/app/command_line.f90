@@ -8,8 +8,8 @@ module rbs_app_command_line
    public :: command_type, read_command_line
 
    character(len=9), parameter :: commands(4) = ['run  ', 'check', 'modes', 'keys ']
-   character(len=10), parameter :: options(7) = ['--output  ', '--quiet   ', '--json    ', '--count   ', &
-              '--matrices', '--help    ', '--version ']
+   character(len=10), parameter :: options(8) = ['--output  ', '--quiet   ', '--json    ', '--count   ', &
+              '--matrices', '--as      ', '--help    ', '--version ']
 
    type :: command_type
       !> run, check, modes, keys, help or version
@@ -18,6 +18,8 @@ module rbs_app_command_line
       character(len=:), allocatable :: topic
       !> Path of the case
       character(len=:), allocatable :: case
+      !> Path that the case is called by where it comes from standard input
+      character(len=:), allocatable :: shown
       !> Path of the output; not allocated: the path that the case gives
       character(len=:), allocatable :: output
       logical :: quiet = .false.
@@ -73,14 +75,18 @@ contains
             command%as_json = .true.
          case ('--matrices')
             command%matrices = .true.
-         case ('--count', '-o', '--output')
+         case ('--count', '-o', '--output', '--as')
             if (mark < len(word)) then
                value = word(mark + 1:)
             else if (mark > len(word) .and. i < command_argument_count()) then
                i = i + 1
                value = argument(i)
             end if
-            if (word(:mark - 1) /= '--count') then
+            if (word(:mark - 1) == '--as') then
+               if (allocated(value)) command%shown = value
+               if (.not. allocated(value)) call complain('--as needs the path of the case after it')
+               return
+            else if (word(:mark - 1) /= '--count') then
                if (allocated(value)) command%output = value
                if (.not. allocated(value)) then
                   call complain(word(:mark - 1)//' needs the path of a file after it')
@@ -133,6 +139,7 @@ contains
       subroutine check_whole()
 
          if (.not. allocated(command%topic)) command%topic = ''
+         if (allocated(command%case) .and. .not. allocated(command%shown)) command%shown = command%case
          if (.not. allocated(command%name)) then
             call complain('no command')
          else if (command%name == 'help' .or. command%name == 'version') then

@@ -48,8 +48,9 @@ module rbs_app_commands
 contains
 
    !> rbsdem run: solve a case and write its rows.
-   subroutine run_case(path, output, quiet, error)
-      character(len=*), intent(in) :: path
+   subroutine run_case(path, shown, output, quiet, error)
+      !> Path of the case, and what it is called by where that is standard input
+      character(len=*), intent(in) :: path, shown
       !> Path of the csv; not allocated: the path that the case gives, or the case's name with .csv
       character(len=:), allocatable, intent(in) :: output
       logical, intent(in) :: quiet
@@ -60,6 +61,7 @@ contains
       character(len=:), allocatable :: file, kept_name
 
       call prepare(run, path, error)
+      run%path = shown
       if (.not. allocated(error)) call output_path(file)
       if (.not. allocated(error)) call check_output()
       if (allocated(error)) return
@@ -263,8 +265,9 @@ contains
    end subroutine report_end
 
    !> rbsdem check: report all errors of the input without solving the case.
-   subroutine check_case(path, quiet, as_json, error)
-      character(len=*), intent(in) :: path
+   subroutine check_case(path, shown, quiet, as_json, error)
+      !> Path of the case, and what it is called by where that is standard input
+      character(len=*), intent(in) :: path, shown
       logical, intent(in) :: quiet, as_json
       type(error_type), allocatable, intent(out) :: error
       type(run_type) :: run
@@ -292,7 +295,7 @@ contains
       if (as_json) then
          call print_json()
       else if (.not. quiet) then
-         call say(path//': no errors', error)
+         call say(shown//': no errors', error)
          if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
          call print_notes(notes, error)
       end if
@@ -303,7 +306,7 @@ contains
       subroutine print_json()
          type(error_type), allocatable :: printing
 
-         call buffer%append('{"case": '//json_text(path)//', "errors": [')
+         call buffer%append('{"case": '//json_text(shown)//', "errors": [')
          if (allocated(error)) call append_lines(error%message, .true.)
          call buffer%append(']')
          if (plan%reason /= '') call buffer%append(', "method": '//json_text(trim(plan%method)))

@@ -30,9 +30,9 @@ program rbsdem
    if (.not. allocated(error)) then
       select case (command%name)
       case ('run')
-         call run_case(command%case, command%output, command%quiet, error)
+         call run_case(command%case, command%shown, command%output, command%quiet, error)
       case ('check')
-         call check_case(command%case, command%quiet, command%as_json, error)
+         call check_case(command%case, command%shown, command%quiet, command%as_json, error)
       case ('modes')
          call show_modes(command%case, command%count, command%matrices, error)
       case ('keys')

@@ -6,6 +6,7 @@ module rbs_case_case_record
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
+   use rbs_case_judgement_record, only: judgement_groups, judgement_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    use rbs_structure_frame_frame_parts, only: frame_parts
@@ -38,6 +39,10 @@ module rbs_case_case_record
       type(frame_parts), allocatable :: parts
       !> Drawings that its springs were made of, if they are known: one of a column, several of a drawn frame
       type(drawing_record), allocatable :: drawing(:)
+      !> Where the first of them, or another group that Python needs, stands: 'case.nml line 4:'
+      character(len=80) :: drawn_at = ''
+      !> What Python judges a frame by
+      type(judgement_record) :: judgement
       !> Number of loadings
       integer :: loadings = 0
       type(loading_record) :: loading(most_loadings)
@@ -69,6 +74,7 @@ contains
          if (.not. allocated(self%frame)) allocate (self%frame)
          call self%frame%open_group(group)
       end if
+      if (any(judgement_groups == group)) call self%judgement%open_group(group)
       if (all(drawing_groups /= group)) return
       n = 0
       if (allocated(self%drawing)) n = size(self%drawing)
@@ -109,7 +115,9 @@ contains
       case ('output')
          call self%output%visit(v)
       case default
-         if (any(frame_groups == group)) then
+         if (any(judgement_groups == group)) then
+            call self%judgement%visit_group(group, v, number)
+         else if (any(frame_groups == group)) then
             call self%frame%visit_group(group, v, number)
          else
             call self%drawing(size(self%drawing))%visit_group(group, v, number)
@@ -216,6 +224,7 @@ contains
       call check_together()
       call self%analysis%validate(messages)
       call self%check_static(messages)
+      call self%judgement%validate(messages)
       call self%output%check('output', messages)
       if (self%output%motion .and. self%analysis%known() .and. .not. self%analysis%dynamic()) then
          call messages%add('output: motion = .true. has no meaning in a static path, where nothing '// &

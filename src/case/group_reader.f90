@@ -10,6 +10,7 @@ module rbs_case_group_reader
    use rbs_base_units, only: unit_system
    use rbs_case_case_record, only: case_record, most_loadings
    use rbs_case_drawing_record, only: drawing_groups
+   use rbs_case_judgement_record, only: judgement_groups
    use rbs_case_spring_entry, only: entry_list, spring_groups, give_springs, place_springs
    use rbs_hysteresis_registry, only: rule_names, keys_of
    use rbs_section_events, only: diagram_record
@@ -25,7 +26,7 @@ module rbs_case_group_reader
    !> The groups of a case.
    character(len=16), parameter, public :: group_names(*) = [character(len=16) :: &
       'case', 'units', 'column', frame_groups, 'damping', spring_groups, drawing_groups, 'loading', &
-      'analysis', 'output']
+      'analysis', judgement_groups, 'output']
 
    !> The groups that Python gives of a section: the drawing, and last the three kinds of requests.
    character(len=16), parameter, public :: section_groups(10) = [character(len=16) :: &
@@ -33,7 +34,8 @@ module rbs_case_group_reader
 
    !> Groups that may appear several times.
    character(len=16), parameter :: repeated(*) = [character(len=16) :: &
-      spring_groups, frame_groups(2:), 'steel', 'row', 'boundary', 'curtain', 'parameter', 'loading']
+      spring_groups, frame_groups(2:), 'steel', 'row', 'boundary', 'curtain', 'parameter', &
+      'loading', 'assess']
 
    !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1
@@ -112,6 +114,7 @@ contains
          self%rule_keys = [key_type ::]
       else
          call self%case%open_group(group)
+         if (group == 'drawing' .and. self%case%drawn_at == '') self%case%drawn_at = where
       end if
       call self%collect_keys()
    end subroutine open

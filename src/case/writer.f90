@@ -9,6 +9,7 @@ module rbs_case_writer
    use rbs_base_text, only: to_text, exact_text, text_buffer
    use rbs_case_case_record, only: case_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
+   use rbs_case_judgement_record, only: judgement_groups
    use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_structure_frame_frame_record, only: frame_groups
    use rbs_hysteresis_registry, only: keys_of
@@ -41,7 +42,7 @@ contains
       type(case_text), intent(inout) :: text
       !> Springs of layers that have been written before
       type(entry_list) :: layer_springs
-      integer :: i
+      integer :: g, i
 
       call write_record('case')
       if (allocated(case%frame)) then
@@ -64,6 +65,11 @@ contains
          call write_record('loading', i)
       end do
       call write_record('analysis')
+      do g = 1, size(judgement_groups)
+         do i = 1, case%judgement%count_of(judgement_groups(g))
+            call write_record(trim(judgement_groups(g)), i)
+         end do
+      end do
       call write_record('output')
 
    contains

@@ -30,21 +30,21 @@ CASE = """\
 &column_of lines = 'inner', storey = 3, kind = 'outer' /
 &beam_of kind = 'beam' /
 &beam_of bays = 'inner', storey = 3, kind = 'none' /
-&drawing name = 'outer', version = '2026.7' /
+&drawing name = 'outer', version = 'VERSION' /
 &section shape = 'rectangle', width = 0.35, depth = 0.35, cover = 0.03 /
 &concrete fc = 25e6 /
 &steel id = 1, fy = 450e6, fu = 600e6 /
 &steel id = 2, fy = 400e6 /
 &layout number = 8, diameter = 0.018, steel = 1 /
 &ties diameter = 0.008, spacing = 0.15, steel = 2 /
-&drawing name = 'inner', version = '2026.7' /
+&drawing name = 'inner', version = 'VERSION' /
 &section shape = 'rectangle', width = 0.45, depth = 0.45, cover = 0.03 /
 &concrete fc = 35e6 /
 &steel id = 1, fy = 450e6, fu = 600e6 /
 &steel id = 2, fy = 400e6 /
 &layout number = 8, diameter = 0.018, steel = 1 /
 &ties diameter = 0.008, spacing = 0.15, steel = 2 /
-&drawing name = 'beam', version = '2026.7' /
+&drawing name = 'beam', version = 'VERSION' /
 &section shape = 'rectangle', width = 0.3, depth = 0.5, cover = 0.03 /
 &concrete fc = 25e6 /
 &steel id = 1, fy = 450e6, fu = 600e6 /
@@ -53,7 +53,7 @@ CASE = """\
 &row face = 'bottom', number = 3, diameter = 0.016 /
 &ties diameter = 0.008, spacing = 0.15, steel = 2 /
 &loading drive = 'displacement', values = 0.05 /
-"""
+""".replace("VERSION", rbsdem.section.parameters().version)
 
 
 @pytest.fixture(scope="module")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import subprocess
 import sys
 import threading
 import webbrowser
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -22,11 +24,12 @@ from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
 from rbsdem.checks.limit_states import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
-from rbsdem.errors import InputError, RepairWarning
+from rbsdem.errors import InputError, RbsdemError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble
 from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
+from rbsdem.many.judgement import asked, checked, judge
 from rbsdem.many.runs import NAMES
 from rbsdem.many.store import store_status
 from rbsdem.methods.ladder import OF_SETTING
@@ -52,6 +55,10 @@ _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one
 _tests = click.option("--tests", type=FOLDER, metavar="DIR", help="show the nearest measured tests")
 
 
+#: Exit code of a run that ended because the structure collapsed.
+_COLLAPSED = 3
+
+
 # ---- drawn frames -------------------------------------------------------------------------------
 
 
@@ -69,14 +76,16 @@ def draw(case: Path) -> int:
 
 
 def on_springs(program: str, words: Sequence[str], path: str) -> int:
-    """Run the executable on a drawn case: as it is, and once it is sound with its springs.
+    """Run the executable on a case whose springs, or whose loads, Python makes.
+
+    After `run` what the case asks for is done: target displacement, acceptance, the report.
 
     Parameters
     ----------
     program : str
         The executable.
     words : sequence of str
-        Arguments of the command line.
+        Arguments of the command line, without the one for the report.
     path : str
         The one of them that is the case.
 
@@ -85,25 +94,59 @@ def on_springs(program: str, words: Sequence[str], path: str) -> int:
     int
         Exit code.
     """
-    told: dict[str, Any] = {"capture_output": True, "encoding": "utf-8"}
-    done = subprocess.run([program, *words], check=False, **told)
-    if "rbsdem draw" in done.stdout + done.stderr:
-        try:
-            springs = read_case(path).to_namelist(springs=True)
-        except InputError as error:
-            lines = str(error).splitlines()
-            if "--json" in words:
-                found = [{"line": None, "message": line} for line in lines]
-                print(json.dumps({"case": path, "errors": found, "notes": []}))
-            else:
-                sys.stderr.writelines(f"rbsdem: {line}\n" for line in lines)
-            return 2
-        names = ["-" if word == path else word for word in words]
-        done = subprocess.run([program, *names], input=springs, check=False, **told)
-    text = done.stdout.replace('{"case": "-"', f'{{"case": {json.dumps(path)}', 1)
-    sys.stdout.write(f"{path}{text[1:]}" if text.startswith("-:") else text)
-    sys.stderr.write(done.stderr)
-    return done.returncode
+    words, page = _without_report(words, path)
+    try:
+        case = read_case(path)
+        if words[0] != "modes":
+            checked(case)
+    except RbsdemError as error:
+        lines = str(error).splitlines()
+        if "--json" in words:
+            found = [{"line": None, "message": line} for line in lines]
+            print(json.dumps({"case": path, "errors": found, "notes": []}))
+        else:
+            sys.stderr.writelines(f"rbsdem: {line}\n" for line in lines)
+        return 2 if isinstance(error, InputError) else 1
+    if "initial" in case.settings:
+        start = os.path.abspath(case.settings["initial"])
+        case = replace(case, settings=case.settings | {"initial": start})
+    names = ["-" if word == path else word for word in words]
+    springs = case.to_namelist(springs=True)
+    sys.stdout.flush()
+    code = subprocess.run(
+        [program, *names, "--as", path], input=springs, check=False, encoding="utf-8"
+    ).returncode
+    if words[0] != "run" or code not in (0, _COLLAPSED) or not (page or asked(case)):
+        return code
+    try:
+        if not asked(case):
+            _tell_files(write_record(case.run(), page))
+            return code
+        judged = judge(case)
+        if "--quiet" not in words and "-q" not in words:
+            print(judged)
+        if page and judged.assessments:
+            more: dict[str, Any] = {"target": judged.target, "check": judged.check}
+            written = write_record(judged.assessments[0], page, title=case.title, **more)
+            _tell_files(written)
+        elif page:
+            _tell_files(write_record(judged.result, page, title=case.title))
+    except RbsdemError as error:
+        sys.stderr.writelines(f"rbsdem: {line}\n" for line in str(error).splitlines())
+        return 2 if isinstance(error, InputError) else 1
+    return code
+
+
+def _without_report(words: Sequence[str], path: str) -> tuple[list[str], str]:
+    """Return the arguments without --report, and its file: by default that of the case."""
+    kept, page = [], ""
+    for word in words:
+        option, _, file = word.partition("=")
+        if option == "--report":
+            page = file or str(Path(path).with_suffix(".html"))
+        else:
+            kept.append(word)
+    return kept, page
 
 
 # ---- methods ------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import os
 import tempfile
 import zipfile
 import zlib
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -59,6 +59,12 @@ class Case:
         The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
         events, tolerance, rho_infinity, collapse_drift, allow_unstable, max_seconds, every,
         openings, motion, initial (path of a state).
+    target, records : dict
+        The values of `&target` and `&records`, by their keys; empty without them.
+    assess : list of dict
+        Those of each `&assess`. `rbsdem.codes.judge` does what they ask for.
+    files : dict
+        Paths of `&output`, from the folder of the case: "file", "state".
     """
 
     title: str
@@ -71,6 +77,10 @@ class Case:
     vertical_acceleration: Array | None
     axial_load: Array | None
     settings: dict[str, Any]
+    target: dict[str, Any] = field(default_factory=dict)
+    records: dict[str, Any] = field(default_factory=dict)
+    assess: list[dict[str, Any]] = field(default_factory=list)
+    files: dict[str, str] = field(default_factory=dict)
 
     @property
     def solver(self) -> Solver:
@@ -149,7 +159,10 @@ class Case:
         if "initial" in settings:
             settings["initial"] = _core.Text(os.fspath(settings["initial"]))
         parts.append(_core.group("analysis", {"method": self.method} | settings))
-        parts.append(_core.group("output", output))
+        for name, given in (("target", self.target), ("records", self.records)):
+            parts.append(_core.group(name, _texts(given)))
+        parts += [_core.group("assess", _texts(given)) for given in self.assess]
+        parts.append(_core.group("output", output | _texts(self.files)))
         return _core.evaluate("to_namelist", _core.joined(parts)).text
 
     def __eq__(self, other: object) -> bool:
@@ -191,13 +204,22 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     found = {name: given[-1] for name, given in groups.items()}
     settings = _core.typed("analysis", found.get("analysis", {}))
     settings |= _core.typed("output", found.get("output", {}))
-    # The histories already end at the duration; the csv file is for the executable only.
-    for name in ("duration", "file", "state"):
-        settings.pop(name, None)
+    # The histories already end at the duration.
+    settings.pop("duration", None)
+    more: dict[str, Any] = {
+        "target": _core.typed("target", found.get("target", {})),
+        "records": _core.typed("records", found.get("records", {})),
+        "assess": [_core.typed("assess", given) for given in groups.get("assess", [])],
+        "files": {name: settings.pop(name) for name in ("file", "state") if name in settings},
+    }
+    if "path" in more["records"]:
+        folder = os.path.dirname(os.fspath(path))
+        more["records"]["path"] = os.path.join(folder, more["records"]["path"])
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
     if "frame" in groups:
-        return _case_of(frame_of(groups, drawings), found, settings, time, values, acting)
+        frame = frame_of(groups, drawings)
+        return _case_of(frame, found, settings, time, values, acting, more)
     column = _core.typed("column", found["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))
     beneath = {name: column.pop(f"{name}_0", None) for name in SPRING_GROUPS}
@@ -212,7 +234,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         column["damping"] = Damping(**_core.typed("damping", found["damping"]))
     column = {"mass": None} | column
     made = layered_column(drawing_of(groups), column) if "drawing" in groups else Column(**column)
-    return _case_of(made, found, settings, time, values, acting)
+    return _case_of(made, found, settings, time, values, acting, more)
 
 
 def _case_of(
@@ -222,13 +244,19 @@ def _case_of(
     time: Array,
     values: Array,
     acting: Any,
+    more: dict[str, Any],
 ) -> Case:
-    loads = {
+    loads: dict[str, Any] = {
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
     }
     title, method = found.get("case", {}).get("title", ""), settings.pop("method")
-    return Case(title, structure, method, time, **loads, settings=settings)
+    return Case(title, structure, method, time, **loads, settings=settings, **more)
+
+
+def _texts(given: dict[str, Any]) -> dict[str, Any]:
+    """Return values whose texts are passed on unchanged."""
+    return {k: _core.Text(v) if isinstance(v, str) else v for k, v in given.items()}
 
 
 def case_of_text(text: str) -> Case:

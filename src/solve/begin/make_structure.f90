@@ -59,8 +59,10 @@ contains
       integer :: i, j
 
       if (case%is_drawn_frame()) then
-         call messages%add('frame: it is drawn, and Python makes members of drawings; run it there, '// &
-                           'rbsdem.read_case(path).run(), or write its springs: rbsdem draw CASE.nml')
+         call messages%add(trim(case%drawn_at//' ')//' the frame is drawn by sections, or has loads that '// &
+                           'are made of others, and this executable solves springs: type rbsdem run '// &
+                           'CASE.nml with the Python package installed, or make its springs there: '// &
+                           'rbsdem draw CASE.nml > springs.nml')
          call messages%raise(error)
          return
       end if

@@ -1,0 +1,157 @@
+"""What a case asks beside its analysis: target displacement, records beside it, acceptance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rbsdem.checks.acceptance import LEVELS, Assessment, assess
+from rbsdem.errors import InputError
+from rbsdem.many.target import Target, TargetCheck, target
+from rbsdem.motions.design import DesignSpectrum
+from rbsdem.motions.read import read_motion, read_motions
+from rbsdem.run.case import Case
+from rbsdem.run.result import FrameResult, pushover
+from rbsdem.section.building import Frame
+
+#: Keys of a spectrum, by its code.
+_SPECTRA: dict[str, tuple[str, ...]] = {
+    "en_1998": ("ag", "soil", "kind", "damping"),
+    "asce_41": ("s_xs", "s_x1", "long_period", "damping"),
+}
+_NEEDED = {"en_1998": ("ag",), "asce_41": ("s_xs", "s_x1")}
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """A case with what it asks for.
+
+    Attributes
+    ----------
+    result : FrameResult
+        The push-over to the largest displacement of the loading, or the response in time.
+    target : Target or None
+        Its target displacement, if the case has a `&target`.
+    check : TargetCheck or None
+        The error of that under the records of the case.
+    assessments : list of Assessment
+        One for each `&assess`.
+    levels : list of str
+        The level that each of them is judged at.
+    """
+
+    result: FrameResult
+    target: Target | None
+    check: TargetCheck | None
+    assessments: list[Assessment]
+    levels: list[str]
+
+    def __str__(self) -> str:
+        """Return what was found, a line each."""
+        lines = [] if self.target is None else [str(self.target)]
+        lines += [] if self.check is None else [str(self.check)]
+        for found, level in zip(self.assessments, self.levels, strict=True):
+            word = "accepted" if found.accepted(level) else "not accepted"
+            lines += [str(found), f"{word} at {level}; the largest ratios:"]
+            lines.append(found.worst(5, level).to_string(index=False, float_format="{:.4g}".format))
+        return "\n".join(lines)
+
+
+def asked(case: Case) -> bool:
+    """Return whether a case asks for more than its rows."""
+    return bool(case.target or case.assess)
+
+
+def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
+    """Return the spectrum of a case and the level of each assessment.
+
+    Raises
+    ------
+    InputError
+        If what it asks for cannot be done: a line for each fault.
+    """
+    faults = []
+    if asked(case) and not isinstance(case.column, Frame):
+        faults.append("target, assess: they are for frames; remove them from the case of a column")
+    if case.target and (case.method != "static" or case.displacement is None):
+        faults.append(
+            "target: it is that of a push-over; give drive = 'displacement' without times"
+        )
+    spectrum = None
+    try:
+        spectrum = _spectrum(case.target) if case.target else None
+    except InputError as error:
+        faults.append(str(error))
+    levels = []
+    for given in case.assess:
+        known = LEVELS[given["code"]]
+        levels.append(given.get("level", known[-1]))
+        if levels[-1] not in known:
+            faults.append(
+                f"assess: level = {levels[-1]!r} is none of {given['code']}; it is one of "
+                f"{', '.join(known)}"
+            )
+    if faults:
+        raise InputError("\n".join(faults))
+    return spectrum, levels
+
+
+def _spectrum(given: Mapping[str, Any]) -> DesignSpectrum:
+    code = given["spectrum"]
+    for name in _NEEDED[code]:
+        if name not in given:
+            raise InputError(f"target: {name} is missing; spectrum = {code!r} needs it")
+    others = {name for names in _SPECTRA.values() for name in names} - {*_SPECTRA[code]}
+    for name in others & given.keys():
+        raise InputError(f"target: {name} is not of spectrum = {code!r}; remove it")
+    values = {name: given[name] for name in _SPECTRA[code] if name in given}
+    return (DesignSpectrum.en_1998 if code == "en_1998" else DesignSpectrum.asce_41)(**values)
+
+
+def judge(case: Case, *, jobs: int | None = None, progress: bool = False) -> Judgement:
+    """Run a case and do what its groups `&target`, `&records` and `&assess` ask for.
+
+    A static case is a push-over to the largest displacement of its loading. Members are assessed
+    at the target displacement if the push-over reaches it, else by their envelopes.
+
+    Parameters
+    ----------
+    case : Case
+        As of `rbsdem.read_case`.
+    jobs, progress
+        As for `rbsdem.ensemble`, for the records.
+
+    Raises
+    ------
+    InputError
+        If the case asks for what cannot be done.
+    """
+    spectrum, levels = checked(case)
+    if not isinstance(case.column, Frame):
+        raise InputError("judge: the case has no frame; give one")
+    path = case.displacement
+    result: Any
+    if case.method == "static" and path is not None:
+        result = pushover(case.column, displacement=float(path[np.abs(path).argmax()]))
+    else:
+        result = case.run()
+    point = check = None
+    if spectrum is not None:
+        method = case.target["method"]
+        settings = {n: case.target[n] for n in ("site_class",) if n in case.target}
+        point = target(result, spectrum, method, **settings)
+        if case.records:
+            place, units = case.records["path"], case.records.get("units")
+            folder = Path(place).is_dir()
+            records = read_motions(place, units) if folder else [read_motion(place, units)]
+            check = point.check(records, jobs=jobs, progress=progress)
+    at = point if point is not None and point.reached else None
+    found = []
+    for given in case.assess:
+        options = {name: given[name] for name in ("knowledge", "primary") if name in given}
+        found.append(assess(result, given["code"], at=at, **options))
+    return Judgement(result, point, check, found, levels)
