@@ -80,7 +80,9 @@ def test_a_wall_without_hoops_is_a_rectangle_with_its_bars():
     assert moments[0] == pytest.approx(moments[1], rel=1e-12)
     joints = [hinge.hinge_joint(one, 4.56, LOAD, parameters()) for one in (plain, same)]
     assert joints[0].spring == joints[1].spring
-    assert joints[0].flexural_stiffness == pytest.approx(joints[1].flexural_stiffness, rel=1e-12)
+    # Above the joint a wall has the cracked stiffness of walls.
+    ratio = joints[0].flexural_stiffness / joints[1].flexural_stiffness
+    assert ratio == pytest.approx(parameters().wall_stiffness, rel=1e-12)
     assert plain.confinement is None
     with pytest.raises(rbsdem.InputError, match="hoops in its boundary elements"):
         rbsdem.section.moment_curvature(plain, LOAD, 0.01, confined=True)
@@ -207,7 +209,7 @@ def test_a_squat_wall_that_is_cut_fails_in_shear_at_the_same_force():
     forces = [
         rbsdem.pushover(cut(wall(), storeys, 2.0), drift=0.02).force.max() for storeys in (1, 2, 4)
     ]
-    assert forces == pytest.approx([forces[0]] * 3, rel=1e-5)
+    assert forces == pytest.approx([forces[0]] * 3, rel=1e-4)
     spring = rbsdem.section.wall(wall(), 2.0, axial_load=LOAD).joints("shear")[0]
     assert spring.f_y < forces[0] <= spring.f_cap * (1 + 1e-9)
 

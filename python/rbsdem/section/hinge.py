@@ -285,11 +285,12 @@ def hinge_joint(
     }  # fmt: skip
     parts = [part for part, number in numbers.items() for _ in range(number)]
     stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
+    walls = given.wall_stiffness if section.shape == "wall" else 1.0
     return HingeJoint(
         unchecked(Layered, layers=tuple(layers)),
         concrete_length,
-        stiffness * (modulus * section.inertia + of_bars),
-        given.shear_stiffness * modulus / 2.4 * section.shear_area,
+        walls * stiffness * (modulus * section.inertia + of_bars),
+        walls * given.shear_stiffness * modulus / 2.4 * section.shear_area,
         moment,
         moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
         Gauge(tuple(parts), tuple(lengths[part] for part in parts)),
