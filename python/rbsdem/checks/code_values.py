@@ -27,6 +27,7 @@ from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import (
     axial_failure_drift,
     nominal_moment,
+    nominal_point,
     shear_failure_drift,
     shear_strength_sezen,
 )
@@ -107,7 +108,8 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
     Stiffness, strengths, chord and plastic rotations, drifts at failures: ASCE 41-17 (ACI 369.1),
     EN 1998-3, Panagiotakos and Fardis, Elwood and Eberhard, Elwood and Moehle, Sezen and Moehle,
     Haselton, Berry and Eberhard, Goodnight; each with its source, and whether its formula is
-    confirmed. Those that were made for rectangles are left out for circles.
+    confirmed. Those that were made for rectangles are left out for circles; walls have shear
+    strength and drift capacity of ACI 318-19 alone.
 
     Parameters
     ----------
@@ -131,7 +133,8 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
     c = _Drawn(section, quantities(section, height, axial_load))
     found = []
     for row in _package.rows("code_values.csv"):
-        if not _COVERS[row["covers"]](c.q):
+        walls = section.shape == "wall"
+        if (row["covers"] == "wall") != walls or not _COVERS[row["covers"]](c.q):
             continue
         value = _FORMULAS[row["name"]](c)
         if math.isfinite(value):
@@ -175,6 +178,32 @@ class _Drawn:
         given = q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt
         return formulas.asce_41_rotations(*given, circle=q.round)
 
+    @property
+    def wall_shear(self) -> float:
+        """Nominal shear strength of a wall by ACI 318-19 [N]."""
+        q = self.q
+        ties = q.tie_ratio, q.fyt
+        return formulas.aci_318_wall_shear(q.fc, q.width * q.depth, q.span / q.depth, *ties)
+
+    def least_of_wall(self, drift: Callable[[float, float, float, float], float]) -> float:
+        """Return the lesser drift of both directions.
+
+        It is a function of length, width of the zone in compression and depth of the neutral axis
+        [m], and of the moment [N m].
+        """
+        found = []
+        for section in (self.section, self.section.mirrored):
+            # The zone in compression is at y < 0.
+            edge = section.part(1e-3 * section.depth)[0] / (1e-3 * section.depth)
+            found.append(drift(section.depth, edge, *nominal_point(section, self.q.load)))
+        return min(found)
+
+    def wall_drift(self, length: float, width: float, axis: float, moment: float) -> float:
+        """Return the drift capacity of a wall by ACI 318-19."""
+        shear = min(1e3 * moment / self.q.span, self.wall_shear)
+        stress = shear / (self.q.width * self.q.depth)
+        return formulas.aci_318_wall_drift(length, width, axis, stress, self.q.fc)
+
     @cached_property
     def haselton(self) -> formulas.Haselton:
         """The backbone of Haselton."""
@@ -185,6 +214,7 @@ class _Drawn:
 _COVERS: dict[str, Callable[[Quantities], bool]] = {
     "": lambda q: True,
     "rectangle": lambda q: not q.round,
+    "wall": lambda q: True,
     "ties": lambda q: q.tie_ratio >= 0.0005,
     "hoops": lambda q: q.hoop_ratio > 0,
     "round hoops": lambda q: q.hoop_ratio > 0 and q.round,
@@ -204,6 +234,9 @@ _FORMULAS: dict[str, Callable[[_Drawn], float]] = {
     "asce_41.io": lambda c: c.rotations.io,
     "asce_41.ls": lambda c: c.rotations.ls,
     "asce_41.cp": lambda c: c.rotations.cp,
+    "aci_318.wall_shear": lambda c: c.wall_shear,
+    "aci_318.wall_drift": lambda c: c.least_of_wall(c.wall_drift),
+    "walls.drift": lambda c: c.least_of_wall(lambda *s: formulas.wall_drift_at_loss(*s[:3])),
     "ec_8.yield": lambda c: formulas.ec_8_yield_rotation(
         c.q, cracked=formulas.ec_8_cracks_in_shear(c.q)
     ),

@@ -426,6 +426,66 @@ def ec_8_joint_strength(
     return (0.8 if exterior else 1.0) * eta * fc * width * depth * left
 
 
+def aci_318_wall_shear(
+    fc: float, area: float, slenderness: float, tie_ratio: float, tie_yield: float
+) -> float:
+    """Return the nominal shear strength of a wall, ACI 318-19, 18.10.4.1 and 18.10.4.4 [N].
+
+    A_cv (alpha_c sqrt(f'c) + rho_t f_yt), alpha_c from 0.25 for walls as high as 1.5 lengths to
+    0.17 from 2 on, and at most 0.83 sqrt(f'c) A_cv.
+
+    Parameters
+    ----------
+    fc : float
+        Cylinder strength f'c [MPa].
+    area : float
+        A_cv, of length and thickness of the web [mm2].
+    slenderness : float
+        Height over length of the wall, h_w/l_w; M/(V l_w) for a wall with a force at its top.
+    tie_ratio, tie_yield : float
+        Ratio of the horizontal bars, rho_t, and their yield stress [-, MPa].
+    """
+    alpha = min(max(0.25 - 0.16 * (slenderness - 1.5), 0.17), 0.25)
+    root = math.sqrt(fc)
+    return area * min(alpha * root + tie_ratio * tie_yield, 0.83 * root)
+
+
+def aci_318_wall_drift(
+    length: float, width: float, axis: float, shear_stress: float, fc: float
+) -> float:
+    """Return the drift capacity of a wall with special boundary elements, ACI 318-19, 18.10.6.2(b).
+
+    (4 - l_w c/(50 b^2) - V_e/(0.66 sqrt(f'c) A_cv))/100 of the height, 0.015 at the least.
+
+    Parameters
+    ----------
+    length, width, axis : float
+        Length of the wall l_w, width of its zone in compression b, and depth of the neutral axis c
+        at the nominal moment under the axial load, in one unit.
+    shear_stress, fc : float
+        V_e/A_cv and the cylinder strength [MPa].
+    """
+    slender = length * axis / (50.0 * width**2)
+    return max(0.01 * (4.0 - slender - shear_stress / (0.66 * math.sqrt(fc))), 0.015)
+
+
+def wall_drift_at_loss(length: float, width: float, axis: float) -> float:
+    """Return the drift at which a wall that bends has lost a fifth of its strength.
+
+    0.078 (l_w c/b^2)^-0.41, l_w c/b^2 from 5 to 55: fitted to 39 walls of 20 publications that
+    bent, alone or with shear, and lost 15 % and more (`studies/walls_measured.py`); test over this
+    1.02, standard deviation of logarithms 0.29 with publications left out (ACI 318-19,
+    18.10.6.2(b): 0.33).
+
+    Parameters
+    ----------
+    length, width, axis : float
+        As for `aci_318_wall_drift`.
+    """
+    slender = min(max(length * axis / width**2, 5.0), 55.0)
+    return 0.078 * math.exp(-0.41 * math.log(slender))
+
+
 def _nu(q: Quantities) -> float:
     return q.load / (q.width * q.depth * q.fc)
 

@@ -24,16 +24,20 @@ from rbsdem.model.frame import Frame, FrameSpring, Structure
 from rbsdem.model.rows import LimitState, LimitStates, Response, Rows
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
+from rbsdem.model.wall import WallSection
+from rbsdem.section.hinge import wall_buckling_strain
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import axial_failure_drift, axial_failure_interval
 
 #: The limit states that criteria find, and what each is.
 WATCHED: dict[str, str] = {
     "cracking": "the section cracks, or a spring leaves its first line",
-    "first_yield": "the first bar, or a flexural spring, yields",
+    "first_yield": "the first bar, of a wall of its boundary elements, or a flexural spring yields",
+    "web_yield": "the first bar of the web of a wall yields",
     "nominal_moment": "the extreme fibre is at the strain of the nominal moment",
     "hoop_yield": "the core is at the peak of its confined strength, where its hoops yield",
     "spalling": "the cover spalls",
+    "crushing": "the core of a boundary element of a wall, or its end without hoops, is crushed",
     "bar_buckling": "a bar is stretched so far that it buckles on reversal",
     "hoop_fracture": "the core is at the strain at which its hoops fracture",
     "bar_fracture": "a bar in tension breaks",
@@ -50,6 +54,7 @@ _SLIPS = {"cracking": "shear_cracking", "yield": "shear_yield", "cap": "shear_fa
 
 _OF_BARS = {
     "first_yield": "f_y/E_s of a bar in tension",
+    "web_yield": "f_y/E_s of a bar of the web in tension",
     "bar_fracture": "eps_u of a bar in tension",
     "bar_buckling": "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)",
 }
@@ -237,8 +242,8 @@ def _of_layers(
 
 def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion]:
     """Yield strains of the concrete of a hinge that knows its drawing."""
-    law, core = section.concrete_law, section.confinement
-    half = 0.5 * section.depth
+    law, half = section.concrete_law, 0.5 * section.depth
+    walls = section.shape == "wall"
     length = next(
         length for part, length in zip(gauge.part, gauge.length, strict=True) if part != "bar"
     )
@@ -253,11 +258,22 @@ def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion
             yield strain("cracking", y, law["ft"] / law["ec"], source)
         source = "0.003 at the extreme fibre (ACI 318-19, 22.2.2.1)"
         yield strain("nominal_moment", y, 0.003, source, -1.0)
-        source = "eps_spall of the concrete"
-        yield strain("spalling", y, section.concrete.eps_spall, source, -1.0)
+        lost = section.concrete.eps_spall
+        if walls:
+            yield strain("spalling", y, _SPALLS, "0.004 at the end face of a wall", -1.0)
+        else:
+            yield strain("spalling", y, lost, "eps_spall of the concrete", -1.0)
+        # That of a wall is the one at y < 0.
+        core = section.confinement if y < 0 or not walls else section.mirrored.confinement
         if core is None:
+            if walls:
+                yield strain("crushing", y, lost, "eps_spall of the end without hoops", -1.0)
             continue
         edge = math.copysign(0.5 * core.depth, y)
+        if isinstance(section, WallSection):
+            edge = math.copysign(section.core_edges[y > 0], y)
+            source = "eps_cc at the edge of the core (Mander, Priestley, Park 1988)"
+            yield strain("crushing", edge, core.eps_cc, source, -1.0)
         source = "eps_cc at the edge of the core (Mander, Priestley, Park 1988)"
         yield strain("hoop_yield", edge, core.eps_cc, source, -1.0)
         source = "eps_cu at the edge of the core (Priestley, Seible, Calvi 1996, eq 5.14)"
@@ -270,19 +286,37 @@ def _of_bars(
     """Yield strains of the bars of a hinge that knows its drawing."""
     spring, gauge = layers
     buckles = buckling_strain(section, column) if buckling else math.inf
-    outer: dict[tuple[float, float, float], list[float]] = {}
+    outer: dict[tuple[float, ...], list[float]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
     layers_of_bars = [(y, over) for (y, _), part, over in rows if part == "bar"]
     # They are in the order of the bars: at one height there may be bars of several steels.
     for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
-        outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
-    for (yields, breaks, over), places in outer.items():
+        in_web, bows = 0.0, buckles
+        if isinstance(section, WallSection):
+            in_web = float(not section.in_boundary(y))
+            bows = bar_buckling_strain(column, y) if buckling else math.inf
+        outer.setdefault((steel.fy / steel.es, steel.eps_u, bows, in_web, over), []).append(y)
+    for (yields, breaks, bows, in_web, over), places in outer.items():
+        thresholds = {"bar_fracture": breaks, "bar_buckling": bows}
+        thresholds["web_yield" if in_web else "first_yield"] = yields
         # Plane sections: of equal bars the outermost ones are stretched most.
         for y in dict.fromkeys((max(places), min(places))):
             lever = {"rotation": y / over, "opening": 1.0 / over}
-            for name, at in zip(_OF_BARS, (yields, breaks, buckles), strict=True):
+            for name, at in thresholds.items():
                 if math.isfinite(at):
                     yield Criterion(name, joint, float(at), _OF_BARS[name], **lever)
+
+
+def bar_buckling_strain(column: Column, y: float) -> float:
+    """Return the tensile strain beyond which a bar of a wall buckles on reversal.
+
+    That of the layers of its joint (Goodnight, Kowalsky and Nau 2013): bars outside of hoops have
+    none of them.
+    """
+    assert isinstance(column, LayeredColumn)
+    drawing = column.drawing
+    assert drawing is not None
+    return wall_buckling_strain(drawing.section, drawing.axial_load, y)
 
 
 def buckling_strain(section: Section, column: Column) -> float:
@@ -301,6 +335,8 @@ def buckling_strain(section: Section, column: Column) -> float:
 
 
 _LOSS = 0.2
+#: Strain at which the cover of a wall spalls.
+_SPALLS = 0.004
 
 
 #: Limit states by the group of springs of an event, and by what happens.

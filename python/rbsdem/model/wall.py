@@ -397,6 +397,20 @@ class WallSection(Section):
         first, last = (end.length if end and end.confines else 0.0 for end in self.ends)
         return first, last
 
+    def in_boundary(self, y: float) -> bool:
+        """Return whether a place is in a boundary element; all of a wall without any is."""
+        end = self.ends[y > 0]
+        return end is None or abs(y) >= 0.5 * self.length - end.length - 1e-9
+
+    @property
+    def core_edges(self) -> tuple[float, float]:
+        """Distances of the outer hoops from mid-length, at y < 0 and y > 0 [m]."""
+        first, last = (
+            0.5 * self.length - self.cover - (0.5 * end.hoops.diameter if end and end.hoops else 0)
+            for end in self.ends
+        )
+        return first, last
+
     @property
     def confines(self) -> bool:
         """Whether hoops confine a core."""

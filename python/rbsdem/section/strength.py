@@ -321,6 +321,19 @@ def nominal_moment(section: Section, axial_load: float) -> float:
     axial_load : float
         Compression positive [N].
     """
+    return nominal_point(section, axial_load)[1]
+
+
+def nominal_point(section: Section, axial_load: float) -> tuple[float, float]:
+    """Return the neutral axis [m] and the moment of `nominal_moment` [N m].
+
+    Parameters
+    ----------
+    section : Section
+        The section, with bars.
+    axial_load : float
+        Compression positive [N].
+    """
     block = _aci_block(section)
 
     def at(axis: float) -> tuple[float, float]:
@@ -328,12 +341,12 @@ def nominal_moment(section: Section, axial_load: float) -> float:
 
     low, high = 1e-6 * section.depth, 1e6 * section.depth
     if not at(low)[0] <= axial_load <= at(high)[0]:
-        return math.nan
+        return math.nan, math.nan
     while high - low > 1e-14 * high:
         # The axis goes over twelve powers of ten: halved by its logarithm first.
         middle = math.sqrt(low * high) if high > 2.0 * low else 0.5 * (low + high)
         low, high = (middle, high) if at(middle)[0] < axial_load else (low, middle)
-    return at(high)[1]
+    return high, at(high)[1]
 
 
 def _aci_318(section: Section, count: int) -> InteractionDiagram:

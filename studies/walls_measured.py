@@ -1,0 +1,567 @@
+"""Walls from their drawings against tested walls: the tables of docs/walls.md.
+
+    python studies/walls_measured.py [FOLDER] [--fit] [--bands] [--figures FOLDER]
+
+FOLDER, by default that of the environment variable RBSDEM_WALLS_DIR, holds `walls.csv` (drawings of
+rectangular walls and four points of their envelopes) and `loop_NAME.csv` (digitised loops in mm and
+kN); the drawings of five of the loops stand here. Nothing of them is part of rbsdem.
+
+Each wall is pushed as far as the test went; the force of the model is its largest. Two rows are
+left out, whose forces are those of other bars than they state: [12] and [20]. Where the file is
+silent: a cover of 20 mm, 0.12 of the thickness at most; bars of boundary elements in rows of two;
+web bars by the ratio that is stated. `--fit` chooses the constants of the shear relation of walls
+and their stiffness with each publication left out in turn; `--bands` finds the scatter of
+`data/wall_spread.json` likewise, and prints how much of the left-out tests the bands hold.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import itertools
+import json
+import math
+import os
+import time
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import rbsdem
+from rbsdem import Bars, Boundary, Concrete, Curtain, Hoops, Steel, WallSection
+from rbsdem.run import bands
+from rbsdem.section.parameters import ModelParameters, parameters
+from rbsdem.section.strength import (
+    arch_factor,
+    axial_strut,
+    nominal_point,
+    shear_strength_mcft,
+)
+
+#: Rows of which the forces are those of other bars.
+DOUBTFUL = ("[12]", "[20]")
+CLASSES = ("flexure", "mixed", "shear")
+#: Points of a push, and the least drift of one.
+POINTS, LEAST_DRIFT = 100, 0.005
+
+#: Drawings of the loops: length, thickness, height [m], axial load [N], f'c [MPa]; boundary: length
+#: [m], bars, diameter [m], f_y, f_u [MPa]; hoops: diameter [m], f_y, spacing [m], legs; vertical
+#: and horizontal bars: diameter, faces, spacing [m], f_y, f_u or f_y [MPa].
+LOOPS: dict[str, tuple[tuple[float, ...], ...]] = {
+    "Thomsen_and_Wallace_RW2": (
+        (1.2192, 0.1016, 3.66, 378e3, 42.8), (0.19, 8, 0.00953, 434, 641),
+        (0.00476, 448, 0.0508, 2), (0.00635, 2, 0.190, 448, 586), (0.00635, 2, 0.190, 448),
+    ),
+    "Dazio_WSH2": (
+        (2.0, 0.15, 4.56, 691e3, 40.5), (0.26, 6, 0.010, 583, 747),
+        (0.006, 485, 0.075, 2), (0.006, 2, 0.126, 485, 535), (0.006, 2, 0.15, 485),
+    ),
+    "Dazio_WSH3": (
+        (2.0, 0.15, 4.56, 686e3, 39.2), (0.26, 6, 0.012, 601, 725),
+        (0.006, 489, 0.075, 2), (0.008, 2, 0.125, 569, 700), (0.006, 2, 0.15, 489),
+    ),
+    "Alarcon_W1": (
+        (0.7, 0.10, 1.75, 287.4e3, 27.4), (0.10, 4, 0.010, 469, 676),
+        (), (0.008, 2, 0.135, 446, 599), (0.005, 2, 0.09, 609),
+    ),
+    "Zhou_SW1": (
+        (0.9, 0.075, 2.25, 203e3, 30.1), (0.18, 10, 0.008, 379, 490),
+        (0.004, 348, 0.030, 2), (0.004, 2, 0.05, 348, 450), (0.004, 2, 0.04, 348),
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Test:
+    """A tested wall: drawing, load, and the points of its envelope.
+
+    Attributes
+    ----------
+    publication, name, failure : str
+        Where it is from, what it is called there, one of `CLASSES`.
+    section : WallSection
+        Its section.
+    span, axial_load : float
+        M/V [m], compression [N].
+    drift, force : ndarray, shape (4,)
+        At cracking, yield, the largest force and the last point [-, N].
+    """
+
+    publication: str
+    name: str
+    failure: str
+    section: WallSection
+    span: float
+    axial_load: float
+    drift: np.ndarray
+    force: np.ndarray
+
+
+def steel(fy: float, fu: float = 0.0) -> Steel:
+    """Return a steel of stresses in Pa; without an ultimate one it is 1.25 times that at yield."""
+    return Steel(fy, fu if fu > fy else 1.25 * fy, eps_sh=max(0.007, 1.1 * fy / 200e9))
+
+
+def cover(thickness: float) -> float:
+    """Return the cover of a wall of which it is not known [m]."""
+    return min(0.02, 0.12 * thickness)
+
+
+def mesh(
+    ratio: float, size: float, faces: float, steel_of: Steel, over: tuple[float, float]
+) -> Any:
+    """Return bars of a ratio in a thickness, of about a size; `over` is thickness and length [m]."""
+    if not ratio > 0.0:
+        return None
+    thickness, length = over
+    number, each = int(faces or 2), size or 0.008
+    area = ratio * thickness * length
+    rows = max(1, round(area / (number * 0.25 * math.pi * each**2)))
+    diameter = math.sqrt(4.0 * area / (math.pi * number * rows))
+    return Curtain(diameter, length / rows, steel_of, number)
+
+
+def drawing(row: dict[str, Any]) -> WallSection:
+    """Return the section of a row of `walls.csv`."""
+    length, thickness, edge = (row[f"{k}_m"] for k in ("length", "thickness", "boundary_length"))
+    first, hoops = cover(thickness) + row["hoop_m"], None
+    if row["hoop_m"] > 0.0:
+        legs = (max(2.0, row[f"legs_{way}"]) for way in ("along", "across"))
+        of_hoops = steel(row["hoop_fy_Pa"] or row["horizontal_fy_Pa"])
+        hoops = Hoops(row["hoop_m"], row["hoop_spacing_m"], of_hoops, *legs)
+    kinds = [
+        (row[f"boundary_bar_m_{i}"], steel(row[f"boundary_fy_Pa_{i}"], row[f"boundary_fu_Pa_{i}"]))
+        for i in (1, 2)
+        for _ in range(int(row[f"boundary_bars_{i}"]))
+    ]
+    thickest = max(d for d, _ in kinds)
+    low = first + 0.5 * thickest
+    high = max(low, edge - row["hoop_m"] - 0.5 * thickest)
+    rows = (len(kinds) + 1) // 2
+    places = np.linspace(low, high, rows) if rows > 1 else [0.5 * edge]
+    bars = [
+        (min(float(places[i // 2]), edge), 0.25 * math.pi * d**2, s)
+        for i, (d, s) in enumerate(kinds)
+    ]
+    of_web = steel(row["vertical_fy_Pa"] or row["boundary_fy_Pa_1"], row["vertical_fu_Pa"])
+    web = {
+        way: (row[f"{way}_ratio"], row[f"{way}_bar_m"], row[f"{way}_faces"])
+        for way in ("vertical", "horizontal")
+    }
+    horizontal = None
+    if web["horizontal"][0] > 0.0:
+        each = row["horizontal_bar_m"] or 0.008
+        faces = int(row["horizontal_faces"] or 2)
+        spacing = faces * 0.25 * math.pi * each**2 / (thickness * row["horizontal_ratio"])
+        horizontal = Curtain(each, spacing, steel(row["horizontal_fy_Pa"]), faces)
+    return WallSection(
+        length,
+        thickness,
+        Concrete(row["fc_Pa"]),
+        boundary=Boundary(edge, bars, hoops),
+        vertical=mesh(*web["vertical"], of_web, (thickness, length - 2 * edge)),
+        horizontal=horizontal,
+        cover=cover(thickness),
+    )
+
+
+def number(text: str) -> Any:
+    """Return a number, or the text that is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def tests(folder: Path) -> list[Test]:
+    """Return the tested walls."""
+    found = []
+    with (folder / "walls.csv").open(encoding="utf-8") as file:
+        for given in csv.DictReader(file):
+            row = {name: number(text) for name, text in given.items()}
+            points = ("crack", "yield", "peak", "last")
+            found.append(
+                Test(
+                    row["reference"],
+                    str(row["specimen"]),
+                    row["failure"],
+                    drawing(row),
+                    row["shear_span_ratio"] * row["length_m"],
+                    row["axial_load_N"],
+                    np.array([row[f"{p}_displacement_m"] / row["height_m"] for p in points]),
+                    np.array([row[f"{p}_force_N"] for p in points]),
+                )
+            )
+    return [test for test in found if not test.publication.startswith(DOUBTFUL)]
+
+
+def column(test: Test, given: ModelParameters | None = None) -> Any:
+    """Return the wall of a test, with other parameters."""
+    load = {"axial_load": test.axial_load, "model_parameters": given}
+    return rbsdem.section.wall(test.section, test.span, **load)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the model has for a test, and test over model."""
+
+    test: Test
+    force: float
+    shear_strength: float
+    flexural_strength: float
+    strength: float
+    stiffness: float
+    drift_at_loss: float
+
+
+def outcome(test: Test, given: ModelParameters | None = None) -> Outcome:
+    """Push the model as far as the test went."""
+    made = column(test, given)
+    drift = max(LEAST_DRIFT, float(test.drift[-1]))
+    push = rbsdem.pushover(made, drift=drift, points=POINTS)
+    far = rbsdem.pushover(made, drift=0.06, points=2 * POINTS)
+    strong = replace(made, shear=[rbsdem.springs.Elastic(1e12), made.joints("shear")[1]])
+    bent = rbsdem.pushover(strong, drift=drift, points=POINTS).force.max()
+    spring = made.joints("shear")[0]
+    # Secant to the force of the test's point of yield, or nearly the model's largest.
+    level = min(float(test.force[1]), 0.98 * push.force.max())
+    row = int(np.argmax(push.force >= level))
+    at = np.interp(level, push.force[: row + 1], push.displacement[: row + 1]) / test.span
+    secant = level / at
+    lost = bands.numbers(far.displacement, far.force, test.span)["drift"]
+    fell = test.force[-1] <= 0.85 * test.force[2]
+    return Outcome(
+        test,
+        float(push.force.max()),
+        spring.f_y,
+        float(bent),
+        float(test.force[2] / push.force.max()),
+        float(test.force[1] / test.drift[1] / secant),
+        float(test.drift[-1] / lost) if fell and math.isfinite(lost) else math.nan,
+    )
+
+
+def shown(ratios: Iterable[float]) -> str:
+    """Return median and standard deviation of logarithms."""
+    values = np.log([ratio for ratio in ratios if math.isfinite(ratio)])
+    if values.size < 2:
+        return "-"
+    return f"{math.exp(np.median(values)):.2f} / {values.std(ddof=1):.3f}"
+
+
+def table_of_walls(found: Sequence[Outcome]) -> None:
+    """Print test over model by classes."""
+    print(
+        "| test over model, median / sd of ln | walls | strength | first stiffness | drift lost |"
+    )
+    print("| --- | --- | --- | --- | --- |")
+    for name in ("all", *CLASSES):
+        own = [one for one in found if name in ("all", one.test.failure)]
+        cells = [
+            shown(getattr(one, what) for one in own)
+            for what in ("strength", "stiffness", "drift_at_loss")
+        ]
+        print(f"| {name} | {len(own)} | {' | '.join(cells)} |")
+    ratios = np.array([one.strength for one in found])
+    low, high = np.quantile(ratios, (0.1, 0.9))
+    print(f"\n80 % of {ratios.size} walls within {low:.2f} and {high:.2f} of the model")
+    for name in CLASSES:
+        own = [one for one in found if one.test.failure == name]
+        share = np.mean([one.shear_strength < one.flexural_strength for one in own])
+        print(f"V_shear below V_flexure: {100 * share:.0f} % of {name}")
+    drifts(found)
+
+
+def drifts(found: Sequence[Outcome]) -> None:
+    """Print drifts at loss, and the relation to l_w c/b^2 with publications left out."""
+    lost = [one for one in found if one.test.force[-1] <= 0.85 * one.test.force[2]]
+    bent = [one for one in lost if one.test.failure != "shear"]
+    drift = np.array([one.test.drift[-1] for one in bent])
+    values = [
+        rbsdem.codes.code_values(one.test.section, one.test.span, one.test.axial_load)
+        for one in bent
+    ]
+    print(f"\ndrift at loss of {len(bent)} walls that bent and lost 15 % and more")
+    for name, ratios in (
+        ("model, one push", [one.drift_at_loss for one in bent]),
+        ("ACI 318-19, 18.10.6.2(b)", drift / [one["aci_318.wall_drift"] for one in values]),
+        ("constant, 2 %", drift / 0.02),
+        ("0.078 (l_w c/b^2)^-0.41", drift / [one["walls.drift"] for one in values]),
+    ):
+        print(f"  {name}: {shown(ratios)}")
+    axis = [nominal_point(one.test.section, one.test.axial_load)[0] for one in bent]
+    wall = [(one.test.section.length, one.test.section.thickness) for one in bent]
+    slender = np.log([size * c / b**2 for c, (size, b) in zip(axis, wall, strict=True)])
+    terms, places = np.column_stack((np.ones(len(bent)), slender)), np.log(drift)
+    unseen = np.zeros(len(bent))
+    publications = np.array([one.test.publication for one in bent])
+    for publication in set(publications.tolist()):
+        out = publications == publication
+        line = np.linalg.lstsq(terms[~out], places[~out])[0]
+        unseen[out] = places[out] - terms[out] @ line
+    first, power = np.linalg.lstsq(terms, places)[0]
+    print(
+        f"  fitted to {len(set(publications.tolist()))} publications: {math.exp(first):.3f} "
+        f"(l_w c/b^2)^{power:.2f}, left out {shown(np.exp(unseen))}"
+    )
+
+
+# ---- constants, with publications left out ------------------------------------------------------
+
+
+def left_out(rows: Sequence[tuple[str, dict[Any, float]]], best: Callable[[Any], float]) -> str:
+    """Return the ratios of publications that the choice among a grid has not seen.
+
+    Parameters
+    ----------
+    rows : sequence of (publication, ratios by choice)
+        Test over model.
+    best : function
+        What is least for the best choice, of the logarithms of its ratios.
+    """
+    choices = list(rows[0][1])
+    logs = {one: np.log([ratios[one] for _, ratios in rows]) for one in choices}
+    places = np.array([publication for publication, _ in rows])
+    seen, taken = np.zeros(len(rows)), Counter[Any]()
+    for publication in dict.fromkeys(places.tolist()):
+        out = places == publication
+        chosen = min(choices, key=lambda one: best(logs[one][~out]))
+        taken[chosen] += 1
+        seen[out] = logs[chosen][out]
+    own = min(choices, key=lambda one: best(logs[one]))
+    return (
+        f"left out {shown(np.exp(seen))}, seen {shown(np.exp(logs[own]))} with {own}; "
+        f"chosen: {taken.most_common(3)}"
+    )
+
+
+def fit(found: Sequence[Outcome]) -> None:
+    """Choose the constants of the relations of walls with each publication left out in turn."""
+    sheared = [one.test for one in found if one.test.failure == "shear"]
+
+    def strength(test: Test, begins: float, most: float, strut: float) -> float:
+        given = test.section, test.span
+        arch = min(arch_factor(*given, 0.0, begins=begins), most)
+        by_theory = shear_strength_mcft(*given, test.axial_load, arch=arch)
+        return 1.02 * (by_theory + strut * axial_strut(*given, test.axial_load))
+
+    def of_columns(test: Test) -> float:
+        given = test.section, test.span, test.axial_load
+        return 1.02 * shear_strength_mcft(*given, arch=arch_factor(*given))
+
+    of_today = [test.force[2] / of_columns(test) for test in sheared]
+    print(f"\n{len(sheared)} shear failures, relation of columns: {shown(of_today)}")
+    struts = (0, 0.5, 0.75, 1, 1.25)
+    for name, axes in (
+        ("arch from 4 d on, as columns: cap, strut", ((4,), (1, 1.5, 2, 3, 4), struts)),
+        ("arch, its cap, strut", ((1, 1.5, 2, 2.5, 3, 4), (2, 3, 4), struts[1:])),
+        ("arch alone, with cap 4 and strut 1", ((1, 1.5, 1.75, 2, 2.25, 2.5, 3), (4,), (1,))),
+    ):
+        grid = list(itertools.product(*axes))
+        rows = [
+            (test.publication, {one: test.force[2] / strength(test, *one) for one in grid})
+            for test in sheared
+        ]
+        print(f"{name}: {left_out(rows, lambda logs: float(np.mean(logs**2)))}")
+    grid = (1.0, 0.7, 0.5, 0.35, 0.25)
+    choices = {one: parameters().with_values(wall_stiffness=one) for one in grid}
+    stiffness = {
+        one: [outcome(each.test, given).stiffness for each in found]
+        for one, given in choices.items()
+    }
+    rows = [
+        (each.test.publication, {one: stiffness[one][i] for one in grid})
+        for i, each in enumerate(found)
+    ]
+    print(f"wall_stiffness: {left_out(rows, lambda logs: abs(float(np.median(logs))))}")
+
+
+# ---- bands ---------------------------------------------------------------------------------------
+
+#: Groups that have widths of their own, see `rbsdem.run.bands`.
+GROUPS = ("far from the shear strength", "near it, squat", "near it, slender")
+#: The share of tests that a band is to hold.
+HELD = 0.8
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A test beside the samples of the model.
+
+    Attributes
+    ----------
+    outcome : Outcome
+        The test.
+    group : int
+        Number of its group.
+    needed : ndarray, shape (4,)
+        By what the band must be widened at each point of the envelope to hold it.
+    """
+
+    outcome: Outcome
+    group: int
+    needed: np.ndarray
+
+
+def variances(publications: Sequence[str], logs: np.ndarray) -> tuple[float, float]:
+    """Return standard deviations between publications, and within them."""
+    names = sorted(set(publications))
+    own = [logs[[i for i, p in enumerate(publications) if p == name]] for name in names]
+    within = sum(float(((x - x.mean()) ** 2).sum()) for x in own) / (logs.size - len(own))
+    sizes = np.array([x.size for x in own])
+    mean = float(logs.mean())
+    among = sum(x.size * (float(x.mean()) - mean) ** 2 for x in own) / (len(own) - 1)
+    each = (logs.size - float((sizes**2).sum()) / logs.size) / (len(own) - 1)
+    return math.sqrt(max(among - within, 0.0) / each), math.sqrt(within)
+
+
+def spread(one: Outcome, scatter: bands.Scatter) -> Spread:
+    """Return a test beside the samples."""
+    test, made = one.test, column(one.test)
+    at = test.drift * test.span
+    path = np.unique(np.concatenate((np.linspace(0.0, at[-1], 60), at)))
+    force = bands.path_force(made, path)
+    sampled = bands.sample(made, path, scatter, 16)
+    up, down = bands.half_band(force, sampled, scatter)
+    rows = np.searchsorted(path, at)
+    off = test.force - force[rows]
+    near = bands.near_shear(made, float(np.abs(force).max())) > 0.5
+    tall = bands.slender(test.span, test.section.depth) > 0.5
+    group = (2 if tall else 1) if near else 0
+    return Spread(one, group, np.where(off > 0, off / up[rows], -off / down[rows]))
+
+
+def fit_bands(found: Sequence[Outcome]) -> None:
+    """Find the scatter of walls, and print what its bands hold of publications left out."""
+    publications = [one.test.publication for one in found]
+    known = bands.scatter_of_tests()
+    scatter = replace(
+        known,
+        strength=variances(publications, np.log([one.strength for one in found])),
+        stiffness=variances(publications, np.log([one.stiffness for one in found])),
+    )
+    beside = [spread(one, scatter) for one in found]
+    places = np.array(publications)
+    ratio = np.array([one.strength for one in found])
+    groups = np.array([one.group for one in beside])
+    held, inside = np.zeros((len(found), 4)), np.zeros(len(found))
+    ends = [(1 - HELD) / 2, (1 + HELD) / 2]
+    for publication in dict.fromkeys(publications):
+        seen = places != publication
+        for i in np.flatnonzero(~seen):
+            like = [j for j in np.flatnonzero(seen) if groups[j] == groups[i]]
+            width = np.quantile(np.concatenate([beside[j].needed for j in like]), HELD)
+            held[i] = beside[i].needed <= width
+            low, high = np.quantile(ratio[like], ends)
+            inside[i] = low <= ratio[i] <= high
+    print(
+        "\n| publications left out | walls | points in the band | largest force in its interval |"
+    )
+    print("| --- | --- | --- | --- |")
+    for name in CLASSES:
+        own = [i for i, one in enumerate(found) if one.test.failure == name]
+        print(f"| {name} | {len(own)} | {held[own].mean():.2f} | {inside[own].mean():.2f} |")
+    widths, peaks = [], []
+    for group, name in enumerate(GROUPS):
+        like = [j for j in range(len(found)) if groups[j] == group]
+        widths.append(float(np.quantile(np.concatenate([beside[j].needed for j in like]), HELD)))
+        peaks.append(tuple(float(x) for x in np.quantile(ratio[like], ends)))
+        print(f"{name}: {len(like)} walls, width {widths[-1]:.3f}, largest force {peaks[-1]}")
+    lost = np.array([one.drift_at_loss for one in found])
+    drift = tuple(float(x) for x in np.nanquantile(lost, ends))
+    given = {
+        "strength": scatter.strength, "stiffness": scatter.stiffness,
+        "degradation": known.degradation, "shape": known.shape, "force": widths, "peak": peaks,
+        "energy": known.energy, "drift": [drift] * 3,
+    }  # fmt: skip
+    rounded = json.loads(json.dumps(given), parse_float=lambda text: round(float(text), 3))
+    print(json.dumps(rounded, indent=2))
+
+
+# ---- loops --------------------------------------------------------------------------------------
+
+
+def loop(folder: Path, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacement [m] and force [N] of a loop, turned so that its work is positive."""
+    d, f = np.loadtxt(folder / f"loop_{name}.csv", delimiter=",", skiprows=1).T * [[1e-3], [1e3]]
+    work = float(np.diff(d) @ (f[1:] + f[:-1]))
+    return d, math.copysign(1.0, work) * f
+
+
+def loop_wall(name: str) -> tuple[WallSection, float, float]:
+    """Return section, height [m] and axial load [N] of a loop."""
+    (length, thickness, height, load, fc), edge, hoop, vertical, horizontal = LOOPS[name]
+    end, bars, size, fy, fu = edge
+    hoops = None
+    if hoop:
+        hoops = Hoops(hoop[0], hoop[2], steel(1e6 * hoop[1]), hoop[3])
+    section = WallSection(
+        length,
+        thickness,
+        Concrete(1e6 * fc),
+        boundary=Boundary(end, Bars(int(bars), size, steel(1e6 * fy, 1e6 * fu)), hoops),
+        vertical=Curtain(
+            vertical[0], vertical[2], steel(1e6 * vertical[3], 1e6 * vertical[4]), int(vertical[1])
+        ),
+        horizontal=Curtain(
+            horizontal[0], horizontal[2], steel(1e6 * horizontal[3]), int(horizontal[1])
+        ),
+        cover=cover(thickness),
+    )
+    return section, height, load
+
+
+def predicted(folder: Path, name: str) -> tuple[Any, Any, float]:
+    """Return measured loop, prediction and time [s]."""
+    section, height, load = loop_wall(name)
+    d, f = loop(folder, name)
+    made = rbsdem.section.wall(section, height, axial_load=load)
+    start = time.perf_counter()
+    result = rbsdem.cyclic(made, displacement=d)
+    return (d, f), result, time.perf_counter() - start
+
+
+def table_of_loops(folder: Path) -> None:
+    """Print the scores of the loops."""
+    print("\n| wall | test kN | nrmse | peak over test | work over test | ms |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    errors = []
+    for name in LOOPS:
+        (d, f), result, seconds = predicted(folder, name)
+        score = rbsdem.compare(result, (d, f))
+        errors.append(score.nrmse)
+        print(
+            f"| {name.replace('_', ' ')} | {np.abs(f).max() / 1e3:.0f} | {score.nrmse:.3f} | "
+            f"{score.peak_ratio:.2f} | {score.energy_ratio:.2f} | {1e3 * seconds:.0f} |"
+        )
+    print(f"\nmean {np.mean(errors):.3f}, worst {max(errors):.3f}")
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
+    parser.add_argument("folder", nargs="?", default=os.environ.get("RBSDEM_WALLS_DIR"))
+    parser.add_argument("--fit", action="store_true")
+    parser.add_argument("--bands", action="store_true")
+    parser.add_argument("--figures", type=Path)
+    given = parser.parse_args()
+    if given.folder is None:
+        parser.error("give the folder, or set RBSDEM_WALLS_DIR")
+    folder = Path(given.folder)
+    warnings.simplefilter("ignore")
+    found = [outcome(test) for test in tests(folder)]
+    table_of_walls(found)
+    table_of_loops(folder)
+    if given.fit:
+        fit(found)
+    if given.bands:
+        fit_bands(found)
+
+
+if __name__ == "__main__":
+    main()
