@@ -115,7 +115,7 @@ def cover(thickness: float) -> float:
 def mesh(
     ratio: float, size: float, faces: float, steel_of: Steel, over: tuple[float, float]
 ) -> Any:
-    """Return bars of a ratio in a thickness, of about a size; `over` is thickness and length [m]."""
+    """Return bars of a ratio, of about a size; `over` is thickness and length [m]."""
     if not ratio > 0.0:
         return None
     thickness, length = over

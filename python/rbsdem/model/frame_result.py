@@ -31,7 +31,7 @@ _CHANNELS = {
 _OVER_YIELD, _OVER_LAYERS = 1.005, 1.05
 
 #: Share of the strength in shear, and of M/V, from which on an end with another M/V is told.
-_TELLING, _OFF_SPAN = 0.5, 0.2
+_TELLING, _TELLING_OF_WALLS, _OFF_SPAN = 0.5, 0.1, 0.2
 
 #: A threshold counts as reached within round-off: a path stands on it exactly.
 _REACHED = 1.0 - 1e-9
@@ -623,7 +623,8 @@ def span_note(result: FrameResult) -> str:
 def shear_span_note(result: FrameResult) -> str:
     """Return a note on ends whose M/V is not that which their strength in shear was found for.
 
-    At the largest shear force of each direction, where it is more than half of that strength.
+    At the largest shear force of each direction, where it is more than half of that strength, of a
+    wall a tenth: the joint at its foot is for that M/V too.
     """
     frame, found = result.frame, []
     for name, kind in frame.kinds.items():
@@ -631,6 +632,7 @@ def shear_span_note(result: FrameResult) -> str:
         if kind.shear_spans is None:
             continue
         member = result.member(name)
+        walls = kind.sections is not None and kind.sections[0].shape == "wall"
         for j, (end, position) in enumerate((("start", 0.0), ("end", 1.0))):
             spring: Any = springs.get(position)
             if not hasattr(spring, "f_y"):
@@ -641,13 +643,20 @@ def shear_span_note(result: FrameResult) -> str:
                 row = int(shear.argmax())
                 strength = spring.f_y if side < 0 else getattr(spring, "f_y_neg", None)
                 span = side * float(member.moment[row, j]) / float(shear[row] or 1.0)
-                if shear[row] > _TELLING * (strength or spring.f_y) and span > 0:
+                telling = _TELLING_OF_WALLS if walls else _TELLING
+                if shear[row] > telling * (strength or spring.f_y) and span > 0:
                     off = span / made
                     if abs(off - 1.0) > _OFF_SPAN:
-                        found.append((abs(math.log(off)), name, end, span, made))
+                        found.append((abs(math.log(off)), name, end, span, made, walls))
     if not found:
         return ""
-    _, name, end, span, made = max(found)
+    _, name, end, span, made, walls = max(found)
+    if walls:
+        return (
+            f"member {name}: at the largest shear force M/V at the foot of the wall is "
+            f"{span:.3g} m, and its springs were made for {made:.3g} m; give wall_spans = "
+            f"{span:.3g} (shear_span of section.wall_members)"
+        )
     more = f", and {len(found) - 1} more are off by a fifth" if len(found) > 1 else ""
     return (
         f"member {name}: at the largest shear force of its {end} M/V is {span:.3g} m, and its "

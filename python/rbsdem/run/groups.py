@@ -33,7 +33,7 @@ SHAPES: dict[str, type[Section]] = {
 }
 
 #: Keys of a frame that is drawn, and of its floors.
-_DRAWN = ("ends", "panel_hoops", "live_share", "self_weight", "mass")
+_DRAWN = ("ends", "panel_hoops", "live_share", "self_weight", "mass", "wall_spans")
 _OF_FLOORS = ("dead_load", "live_load", "mass")
 #: Keys of the location of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import count
@@ -19,11 +19,13 @@ from rbsdem.model.column import NOTES_ON
 from rbsdem.model.frame import FrameMember, FrameNode, Member
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
+from rbsdem.model.wall import WallSection
 from rbsdem.section.columns import member, plastic_moments
 from rbsdem.section.infill import INFILL_NOTE, Infill, InfilledBay
 from rbsdem.section.panel import JointPanel, PanelClass, rigid_ends
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.spans import Pair, line_spans
+from rbsdem.section.walls import wall_members
 
 Halves = tuple[Section, Section]
 Drawn = Section | Halves | FrameMember
@@ -69,6 +71,8 @@ class Building:
         Those that were given [kg].
     nodes, members : tuple of FrameNode and of Member
         What was given in addition.
+    wall_spans : tuple of float
+        M/V at the foot of walls, of all lines or of each [m]; zero or none where it is found.
     made : Statement or None
         The frame that was made of it; one that has been changed since is another.
     """
@@ -87,6 +91,7 @@ class Building:
     floor_mass: Any = None
     nodes: tuple[FrameNode, ...] = ()
     members: tuple[Member, ...] = ()
+    wall_spans: tuple[float, ...] = ()
     made: _core.Statement | None = field(default=None, repr=False)
 
     def floors(self) -> Iterator[_core.Statement]:
@@ -134,6 +139,8 @@ class Frame(model.Frame):
         self_weight: bool = False,
         mass: Literal["from_loads"] | None = None,
         infills: Infill | Mapping[tuple[int, int], Infill | None] | None = None,
+        walls: Mapping[int, WallSection | Sequence[WallSection]] | None = None,
+        wall_spans: ArrayLike | Mapping[int, float] | None = None,
         **more: Any,
     ) -> Frame:
         """Return a frame of storeys and bays, from kinds of members or from their sections.
@@ -169,6 +176,14 @@ class Frame(model.Frame):
         mass : "from_loads", optional
             Floor masses are those of the loads; given `floor_mass` that differ from them by more
             than 5 % are told.
+        walls : mapping, optional
+            Lines that are walls, with a section for all storeys or one for each, from the ground
+            up. Their members have the springs of the whole wall (`rbsdem.section.wall_members`),
+            and beams reach their faces by rigid arms.
+        wall_spans : float, sequence or mapping, optional
+            M/V at the foot of walls, for which their springs are made, of all or by line [m]; by
+            default where the beams yield and the wall at its foot under the lateral load of the
+            pattern. A run tells where it is another.
         infills : Infill or mapping, optional
             Masonry between columns and beams: one for all bays and storeys, or by (bay, storey), 0
             for all, where the last that fits counts; None: there is none.
@@ -187,9 +202,8 @@ class Frame(model.Frame):
         if mass is not None:
             _arguments.choice(mass, "frame: mass", ("from_loads",))
         lines = len(widths) + 1
-        grid = _Grid(
-            heights, widths, _cells(columns, "columns", lines), _cells(beams, "beams", lines - 1)
-        )
+        cells = _cells(columns, "columns", lines) | _walls(walls, lines, len(heights))
+        grid = _Grid(heights, widths, cells, _cells(beams, "beams", lines - 1))
         given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
         for node in given:
             _arguments.instance(node, "frame: nodes", FrameNode)
@@ -212,6 +226,7 @@ class Frame(model.Frame):
             more.pop("floor_mass", None),
             given,
             tuple(more.get("members", ())),
+            _spans_of_walls(wall_spans, lines),
         )
         grid.check_places("node_load", building.node_load, lines)
         more |= grid.loads(building)
@@ -293,6 +308,7 @@ class Frame(model.Frame):
             "live_share": building.live_share if any(building.live_load) else None,
             "self_weight": building.self_weight or None,
             "mass": building.mass,
+            "wall_spans": building.wall_spans or None,
         }
         statement = self._state(cells, drawn, building, **more)
         statement += _infill_groups(building.infills)
@@ -358,6 +374,43 @@ def _cells(given: Any, name: str, lines: int) -> dict[tuple[int, int], Any]:
 def _is_cell(one: Any) -> bool:
     halves = one if isinstance(one, (tuple, list)) and len(one) == 2 else (one,)
     return isinstance(one, FrameMember) or all(isinstance(part, Section) for part in halves)
+
+
+def _walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSection]:
+    """Return the sections of lines that are walls, by line and storey, 0 for all."""
+    found: dict[tuple[int, int], WallSection] = {}
+    for line, one in (given or {}).items():
+        number = _arguments.integer(line, "frame: walls", least=1, most=lines)
+        each = [one] if isinstance(one, WallSection) else list(one)
+        for section in each:
+            _arguments.instance(section, f"frame: walls: line {number}", WallSection)
+        if len(each) not in (1, storeys):
+            raise InputError(
+                f"frame: walls: line {number} has {len(each)} sections for {storeys} storeys; give "
+                "one, or one for each"
+            )
+        places = [0] if len(each) == 1 else range(1, storeys + 1)
+        found |= {(number, k): section for k, section in zip(places, each, strict=True)}
+    return found
+
+
+def _spans_of_walls(given: Any, lines: int) -> tuple[float, ...]:
+    """Return M/V of walls, one for all lines or one for each; 0 where it is not given."""
+    if given is None:
+        return ()
+    if not isinstance(given, Mapping):
+        each = _arguments.vector(given, "frame: wall_spans", shape="1 or m").tolist()
+        if len(each) not in (1, lines) or min(each) < 0.0:
+            raise InputError(
+                f"frame: wall_spans = {_arguments.shown(given)} must be one length above 0, or one "
+                f"for each of {lines} lines, 0 where it is to be found"
+            )
+        return tuple(each)
+    spans = [0.0] * lines
+    for line, span in given.items():
+        number = _arguments.integer(line, "frame: wall_spans", least=1, most=lines)
+        spans[number - 1] = _arguments.number(span, "frame: wall_spans", above=0.0, unit="m")
+    return tuple(spans)
 
 
 def _node_loads(given: Any, lines: int) -> dict[tuple[int, int], float]:
@@ -484,7 +537,11 @@ class _Grid:
             "beams": {(i, k): (rigid[i, k][1], rigid[i + 1, k][1]) for i, k in self.beams},
         }
         spans = self._spans_of_columns(load, ends["columns"], more)
+        walls = self._wall_members(load, spans, building.wall_spans)
         for (i, k), one in self.columns.items():
+            if (i, k) in walls:
+                columns[i, k] = walls[i, k]
+                continue
             place = self.storeys[k - 1], ends["columns"][i, k], load[i, k], 0.0
             columns[i, k] = _kind(one, *place, f"C-{i}-{k}", spans.get((i, k)))
         for (i, k), one in self.beams.items():
@@ -539,11 +596,13 @@ class _Grid:
                 ]
                 nodes = [
                     sum(
-                        sum(plastic_moments(_halves(one)[1 - at], 0.0)) / 2
+                        sum(plastic_moments(_halves(one)[1 - at], 0.0))
+                        / 2
+                        * self._to_axis(i, k, i - 1 + at)
                         for at, one in enumerate(pair)
                         if one is not None
                     )
-                    for pair in beams
+                    for k, pair in zip(levels, beams, strict=True)
                 ]
             except InputError:
                 continue
@@ -554,6 +613,57 @@ class _Grid:
                 low, high = (step * max(round(each / step), 1) for each in own)
                 found[i, k] = (low, low), (high, high)
         return found
+
+    def _to_axis(self, i: int, k: int, bay: int) -> float:
+        """Return the moment of a beam at the axis of a wall over that at its face; else 1."""
+        arms = [
+            0.5 * wall.length if (wall := self.wall_at(line, k)) else 0.0
+            for line in (i, bay + 1 if bay == i else bay)
+        ]
+        return 1.0 + 2.0 * arms[0] / max(self.bays[bay - 1] - sum(arms), 1e-3)
+
+    def _wall_members(
+        self,
+        load: dict[tuple[int, int], float],
+        spans: dict[tuple[int, int], tuple[Pair, Pair]],
+        given: tuple[float, ...],
+    ) -> dict[tuple[int, int], FrameMember]:
+        """Return the kinds of walls: those of one line that stand on each other are one wall."""
+        found: dict[tuple[int, int], FrameMember] = {}
+        for i in range(1, len(self.bays) + 2):
+            stated = given[min(i, len(given)) - 1] if given else 0.0
+            for low, high in self._runs(i):
+                levels = range(low, high + 1)
+                sections: Any = [self.columns[i, k] for k in levels]
+                foot = spans.get((i, low), ((0.0, 0.0),))[0][0] if low == 1 else 0.0
+                loads = [load[i, k] for k in levels]
+                heights = [self.storeys[k - 1] for k in levels]
+                try:
+                    made = wall_members(
+                        sections, heights, axial_loads=loads, shear_span=stated or foot or None
+                    )
+                except InputError as error:
+                    raise InputError(f"frame: the wall of line {i}: {error}") from None
+                found |= {(i, k): kind for k, kind in zip(levels, made, strict=True)}
+        return found
+
+    def _runs(self, i: int) -> list[tuple[int, int]]:
+        """Return the lowest and highest storey of each wall of a line."""
+        runs: list[tuple[int, int]] = []
+        for k in range(1, len(self.storeys) + 1):
+            if not isinstance(self.columns[i, k], WallSection):
+                continue
+            if runs and runs[-1][1] == k - 1:
+                runs[-1] = runs[-1][0], k
+            else:
+                runs.append((k, k))
+        return runs
+
+    def wall_at(self, i: int, k: int) -> WallSection | None:
+        """Return the longer wall that goes through a node."""
+        walls = [self.columns.get((i, level)) for level in (k, k + 1)]
+        own = [one for one in walls if isinstance(one, WallSection)]
+        return max(own, key=lambda one: one.length, default=None)
 
     def infilled(self, cells: Mapping[tuple[int, int], Infill | None]) -> list[InfilledBay]:
         """Return the infills in their places."""
@@ -603,6 +713,10 @@ class _Grid:
         left, right = self.beams.get((i - 1, k)), self.beams.get((i, k))
         beams = [_halves(left)[1]] if _is_drawn(left) else []
         beams += [_halves(right)[0]] if _is_drawn(right) else []
+        wall = self.wall_at(i, k)
+        if wall is not None:
+            # It goes on through the floor, and beams reach its face.
+            return 0.0, 0.5 * wall.length
         if not columns or not beams:
             return 0.0, 0.0
         # The half of a column that ends in the node.
@@ -624,7 +738,7 @@ class _Grid:
             columns, beams = (
                 [one for one in several if _is_drawn(one)] for several in self.around(i, k)
             )
-            if not columns or not beams:
+            if not columns or not beams or self.wall_at(i, k) is not None:
                 continue
             column = _halves(columns[0])[0]
             beam = max((_halves(one)[0] for one in beams), key=lambda one: one.depth)

@@ -212,4 +212,5 @@ def _storey(
         interior="rigid",
         length=height,
         sections=(section, section),
+        shear_spans=((span, span), (span, span)) if low == 0.0 else None,
     )

@@ -133,6 +133,7 @@ module rbs_structure_frame_frame_record
       real(wp) :: live_share = unset
       logical :: self_weight = .false.
       character(len=16) :: mass = 'of_floors'
+      real(wp), allocatable :: wall_spans(:)
       type(floor_record), allocatable :: floor(:)
       type(node_load_record), allocatable :: node_load(:)
       type(kind_record), allocatable :: kind(:)
@@ -279,6 +280,8 @@ contains
                   'storeys, or that of the top', 'storey roof')
       call v%key('ends', self%ends, '', bound_type(0.0_wp, 1.0_wp), 'of drawn members: part of a node '// &
                  'that is rigid in columns and beams; without it the rule of ASCE 41-17', optional=.true.)
+      call v%key('wall_spans', self%wall_spans, 'm', not_negative, 'of drawn walls: M/V at the foot, of '// &
+                 'all lines or of each; without it, or 0, where beams and wall yield', most_storeys)
       call v%word('panel_hoops', self%panel_hoops, 'of drawn members: drawing whose ties are in the '// &
                   'panels of the nodes, or ''none''; without it the nodes are rigid')
       call v%key('live_share', self%live_share, '', bound_type(0.0_wp, 1.0_wp), 'part of the live load '// &
