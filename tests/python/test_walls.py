@@ -304,7 +304,7 @@ def test_a_record_on_a_building_with_a_wall():
 
 
 def test_limit_states_of_a_wall():
-    """The boundary yields before the web; its core, hardly confined, is past its peak before 0.004."""
+    """The boundary yields before the web; a core, hardly confined, is crushed before 0.004."""
     column = rbsdem.section.wall(wall(), 4.56, axial_load=LOAD)
     path = 4.56 * np.linspace(0.0, 0.04, 200)
     states = rbsdem.cyclic(column, displacement=path, openings=True).limit_states()

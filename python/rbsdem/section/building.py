@@ -202,8 +202,8 @@ class Frame(model.Frame):
         if mass is not None:
             _arguments.choice(mass, "frame: mass", ("from_loads",))
         lines = len(widths) + 1
-        cells = _cells(columns, "columns", lines) | _walls(walls, lines, len(heights))
-        grid = _Grid(heights, widths, cells, _cells(beams, "beams", lines - 1))
+        upright = _cells(columns, "columns", lines) | _walls(walls, lines, len(heights))
+        grid = _Grid(heights, widths, upright, _cells(beams, "beams", lines - 1))
         given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
         for node in given:
             _arguments.instance(node, "frame: nodes", FrameNode)
