@@ -39,6 +39,7 @@ from rbsdem.section.parameters import ModelParameters, parameters
 from rbsdem.section.strength import (
     arch_factor,
     axial_strut,
+    column_shear_strength,
     nominal_point,
     shear_strength_mcft,
 )
@@ -346,13 +347,13 @@ def fit(found: Sequence[Outcome]) -> None:
 
     def strength(test: Test, begins: float, most: float, strut: float) -> float:
         given = test.section, test.span
-        arch = min(arch_factor(*given, 0.0, begins=begins), most)
+        arch = arch_factor(*given, 0.0, begins=begins, most=most)
         by_theory = shear_strength_mcft(*given, test.axial_load, arch=arch)
         return 1.02 * (by_theory + strut * axial_strut(*given, test.axial_load))
 
     def of_columns(test: Test) -> float:
         given = test.section, test.span, test.axial_load
-        return 1.02 * shear_strength_mcft(*given, arch=arch_factor(*given))
+        return column_shear_strength(*given)
 
     of_today = [test.force[2] / of_columns(test) for test in sheared]
     print(f"\n{len(sheared)} shear failures, relation of columns: {shown(of_today)}")
