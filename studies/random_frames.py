@@ -5,13 +5,16 @@
 Each relation of `tests/python/test_invariants_frames.py` is tried in CASES cases (by default
 10 000). It prints how many of them say something, the median and the largest distance, the bar,
 and the cases above it. Then CASES/20 frames of each family of springs
-are pushed to a drift of 5 %: they get there, or end with a message that names the member.
+are pushed to a drift of 5 %: they get there, or end with a message that names the member. Where the
+LAPACK is OpenBLAS, as many are cycled with each of three kernels, whose sums have other round-off:
+`python studies/random_frames.py CASES SEED kernels` does that alone.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import subprocess
 import sys
 import warnings
 from collections import Counter
@@ -24,8 +27,8 @@ CASES = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
 os.environ["RBSDEM_SEED"] = sys.argv[2] if len(sys.argv) > 2 else "0"
 
 import test_invariants_frames  # noqa: E402, F401
-from relations import RELATIONS, SEED, Outcome  # noqa: E402
-from strategies_frames import FAMILIES, frame  # noqa: E402
+from relations import RELATIONS, SEED, Outcome, ended  # noqa: E402
+from strategies_frames import FAMILIES, drifts, frame  # noqa: E402
 
 import rbsdem  # noqa: E402
 
@@ -63,9 +66,51 @@ def pushed(family: str, frames: int) -> None:
         print(f"{number:6d}  {text}")
 
 
-if __name__ == "__main__":
+KERNELS = ("Prescott", "Haswell", "SkylakeX")
+
+
+def cycled(family: str, frames: int) -> None:
+    """Print the forces of cyclic paths in shares of the largest: a line for each frame."""
+    rng = np.random.default_rng((SEED, list(FAMILIES).index(family)))
+    for _ in range(frames):
+        made = frame(rng, family)
+        run = ended(lambda made=made: rbsdem.cyclic(made, displacement=drifts(rng, made)))
+        size = max(float(run.summary["peak_force"]), 1.0)
+        print(*(f"{value:.6f}" for value in run.force / size + 0.0))
+
+
+def kernels(frames: int) -> None:
+    """Print how many paths depend on the kernel of OpenBLAS that the processor has."""
+    for family in FAMILIES:
+        answers = []
+        for kernel in KERNELS:
+            words = (sys.executable, __file__, str(frames), str(SEED), "cycled", family)
+            told = subprocess.run(
+                words, env=os.environ | {"OPENBLAS_CORETYPE": kernel}, capture_output=True,
+                text=True, check=True,
+            )  # fmt: skip
+            answers.append(told.stdout.splitlines())
+        rows = [
+            [np.array(line.split(), float) for line in paths]
+            for paths in zip(*answers, strict=True)
+        ]
+        unlike = sum(
+            len({one.size for one in paths}) > 1 or np.ptp(np.array(paths), axis=0).max() > 3e-6
+            for paths in rows
+        )
+        print(f"{frames} cycles of family '{family}': {unlike} depend on the kernel", flush=True)
+
+
+if __name__ == "__main__" and sys.argv[3:4] == ["cycled"]:
+    warnings.simplefilter("ignore")
+    cycled(sys.argv[4], CASES)
+elif __name__ == "__main__" and sys.argv[3:] == ["kernels"]:
+    kernels(CASES)
+elif __name__ == "__main__":
     warnings.simplefilter("ignore")
     for relation in sys.argv[3:] or RELATIONS:
         tried(relation, CASES)
     for springs in FAMILIES if not sys.argv[3:] else ():
         pushed(springs, max(CASES // 20, 1))
+    if not sys.argv[3:]:
+        kernels(max(CASES // 20, 1))

@@ -84,6 +84,27 @@ def frame(rng: Rng, family: str = "mixed", **fixed: Any) -> Frame:
     raise AssertionError(f"no frame of 200 was accepted: {family}, {fixed}")
 
 
+def building(rng: Rng) -> Frame:
+    """Return a frame of 1 to 6 storeys and 1 to 3 bays from the drawings of its members."""
+    bars, hoops = rbsdem.Steel(between(rng, 350e6, 550e6), 600e6), rbsdem.Steel(400e6)
+    more: dict[str, Any] = {"ties": rbsdem.Ties(0.008, float(rng.choice([0.1, 0.15, 0.2])), hoops)}
+    more["cover"] = 0.03
+    concrete = rbsdem.Concrete(between(rng, 18e6, 35e6))
+    side, depth = float(rng.choice([0.3, 0.35, 0.4, 0.5])), float(rng.choice([0.4, 0.5, 0.6]))
+    layout = rbsdem.Layout(int(rng.choice([4, 8])), 0.018, bars)
+    column = rbsdem.RectangularSection(side, side, concrete, layout=layout, **more)
+    below, above = (float(rng.choice([5e-4, 6e-4, 10e-4])), bars), (10e-4, bars)
+    rows = [(0.05 - depth / 2, *below), (depth / 2 - 0.05, *above)]
+    beam = rbsdem.RectangularSection(0.3, depth, concrete, bars=rows, bar_diameter=0.018, **more)
+    storeys, bays = int(rng.integers(1, 7)), int(rng.integers(1, 4))
+    return Frame.grid(
+        [float(rng.choice([3.0, 3.2, 3.5]))] * storeys, [float(rng.choice([4.0, 5.0, 6.0]))] * bays,
+        columns=column, beams=beam, beam_load=float(rng.choice([8e3, 12e3, 18e3])),
+        kinematics=str(rng.choice(["small", "pdelta"])), base=str(rng.choice(["fixed", "pinned"])),
+        floor_mass=3e4,
+    )  # fmt: skip
+
+
 def drifts(rng: Rng, made: Frame, largest: float = 0.04) -> np.ndarray:
     """Return displacements of the top that grow from turn to turn [m].
 

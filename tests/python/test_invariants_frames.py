@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from relations import Discard, Rng, ended, relation
 from strategies import between, scaled_spring, spring, waves
-from strategies_frames import FAMILIES, MODULUS, RULES, drifts, frame
+from strategies_frames import FAMILIES, MODULUS, RULES, building, drifts, frame
 
 import rbsdem
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
@@ -495,6 +495,19 @@ def test_last_bit_of_targets(rng: Rng) -> float:
     made = frame(rng, any_family(rng))
     path = drifts(rng, made)
     return one_way(follow(made, path), follow(made, path * (1 + 1e-15)))
+
+
+@relation(2, judged=0.5, bar=1e-6)
+def test_buildings_go_one_way(rng: Rng) -> float:
+    """Drawn buildings in cycles, in another order, and with targets larger by round-off."""
+    try:
+        made = pushed_at_nodes(rng, building(rng))
+    except (rbsdem.InputError, rbsdem.SolveError):
+        raise Discard from None  # too weak for its load
+    path = drifts(rng, made, 0.015)
+    run = follow(made, path)
+    ordered = as_grid(follow(explicit(rng, made, 0.0, 0.0), path), made)
+    return max(one_way(run, ordered), one_way(run, follow(made, path * (1 + 1e-15))))
 
 
 @relation(40, judged=0.5)
