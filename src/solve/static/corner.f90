@@ -127,7 +127,9 @@ contains
                path%direction = direction
                return
             end if
-            if (effort == if_stable .and. changes == 1 .and. .not. path%is_stable) return
+            if (effort == if_stable .and. changes == 1 .and. .not. path%is_stable) then
+               if (path%structure%axially_loaded .or. any(path%springs%k(:path%moving) < 0.0_wp)) return
+            end if
             if (stopped < fewest) then
                fewest = stopped
                left = patience

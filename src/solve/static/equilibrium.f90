@@ -51,7 +51,7 @@ module rbs_solve_static_equilibrium
       logical :: may_snap_back = .false.
       !> Whether the stiffnesses are too far apart for the arithmetic
       logical :: lost_digits = .false.
-      !> Whether the structure is stable on the present lines while the driven displacement is held
+      !> Whether the structure is known to be stable on the present lines while the displacement is held
       logical :: is_stable = .false.
       !> Rates of force and displacement; work of the load per force and per unit of the driven quantity, less
       !> that of the displacement
@@ -165,7 +165,7 @@ contains
       real(wp) :: residual
 
       self%lost_digits = .false.
-      self%is_stable = all(springs%k(:self%moving) >= 0.0_wp) .and. .not. self%structure%axially_loaded
+      self%is_stable = .false.
       residual = displacement - self%structure%top_displacement(springs%d)
       if (.not. self%in_series) then
          call follow_band(self, springs, by_force, residual, force, rate, found)

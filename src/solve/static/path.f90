@@ -86,8 +86,8 @@ module rbs_solve_static_path
       !> Whether the path follows snap-backs, moves back at present, and is in search through a corner, where
       !> the inside of elements may snap back
       logical :: may_go_back = .false., goes_back = .false., passes = .false.
-      !> Whether the structure is stable on the lines of the rates found last while the displacement is held:
-      !> then there is one way on
+      !> Whether the structure is known to be stable on the lines of the rates found last while the
+      !> displacement is held: then there is one way on
       logical :: is_stable = .false.
       !> Motions of springs to the ends of their lines, 0 for others; whether those lines were
       !> one way, and their stiffness; rates before the corner (springs)
