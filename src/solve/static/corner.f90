@@ -51,7 +51,7 @@ contains
       path%changed = 0
       found = .false.
       is_singular = .false.
-      through = path%may_go_back
+      through = .not. (path%by_force .or. path%springs%axial_load_varies)
       if (through) through = any(path%arrived /= 0)
       if (through) then
          path%rate_in = path%rate
@@ -82,6 +82,8 @@ contains
          call path%springs%restore()
          call follow_through(path, found)
          back = found .and. path%direction /= direction
+         if (back .and. .not. path%may_go_back) found = .false.
+         back = back .and. found
          if (.not. path%goes_back .and. (back .or. .not. found)) then
             call path%springs%restore()
             path%changed = 0

@@ -121,9 +121,12 @@ contains
          if (self%task%stops()) return
          if (.not. abs(self%goal - self%current%t) > 0.0_wp) exit
          direction = merge(1, -1, self%goal > self%current%t)
+         if (direction /= self%last_direction) self%arrived = 0
+         self%last_direction = direction
          if (self%direction /= direction) then
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%crushed_joint() > 0) return
+            self%arrived = 0
             ! A spring that was put on the end of its line left the column a little out of equilibrium.
             if (self%equilibrium%size_of(self%equilibrium%correction, &
                                                 self%current%q) <= no_progress) then
@@ -248,19 +251,20 @@ contains
             stands = .not. abs(trial%t - current%t) > 0.0_wp
             self%stalled_strides = merge(self%stalled_strides + 1, 0, stands)
             if (spring > 0 .and. spring <= self%springs%count) then
-               side = merge(1, -1, self%direction*trial%rate(spring) > 0.0_wp)
+               side = merge(1, -1, self%last_direction*trial%rate(spring) > 0.0_wp)
                closed = merge(self%springs%includes_upper_end(spring), &
                         self%springs%includes_lower_end(spring), side > 0)
-               call self%springs%arrive(spring, side)
+               call self%arrive(spring, real(side, wp))
                ! Where it made no progress its rate is zero and does not show its direction. From an open
                ! end it has gone on already.
                if (closed .and. stands) call self%springs%leave(spring, side)
             end if
             call put_springs()
+            self%rate = self%last_direction*clean(self%structure, trial)
             ! A motion may have turned by less than the search resolves.
-            if (turns .or. spring > 0 .or. &
-                any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
-                                                                         trial) < 0.0_wp)) self%direction = 0
+            if (turns .or. spring > 0 .or. any(self%springs%unload_on_reversal*self%rate < 0.0_wp)) then
+               self%direction = 0
+            end if
          end associate
          self%force = self%trial%force
          self%displacement = self%trial%displacement
@@ -280,14 +284,13 @@ contains
          real(wp) :: work
          integer :: i, j, direction
 
-         direction = self%direction
+         direction = self%last_direction
          associate (springs => self%springs, trial => self%trial)
             do i = 1, self%moving
                if (springs%on_plane(i)) cycle
                call springs%advance_on_branch(i, min(max(trial%q(i), springs%lower(i)), springs%upper(i)))
                if (.not. is_on_end(springs, i, trial%q(i), direction*trial%rate(i))) cycle
-               call springs%arrive(i, merge(1, -1, direction*trial%rate(i) > 0.0_wp))
-               self%direction = 0
+               call self%arrive(i, direction*trial%rate(i))
             end do
             if (.not. springs%axial_load_varies) return
             do j = 1, size(springs%layered)

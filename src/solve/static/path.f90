@@ -75,6 +75,8 @@ module rbs_solve_static_path
       !> direction on the line found last: +1, -1, 0 for no line
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp, control = 0.0_wp
       integer :: direction = 0
+      !> Last motion of it
+      integer :: last_direction = 0
       !> Change of the position per unit of the driven quantity, in its direction (coordinates)
       real(wp), allocatable :: rate(:)
       !> The same of the axial load at the top where it varies [N]
@@ -120,6 +122,7 @@ module rbs_solve_static_path
       procedure :: prepare
       procedure :: compress
       procedure :: follow
+      procedure :: arrive
       procedure :: check_point
       procedure :: record_corner
       procedure :: record_crossing
@@ -545,6 +548,20 @@ contains
       energy%axial = self%without_top_load%potential_energy(self%springs%d) + self%load_work
       energy%residual = self%work + self%at_begin - energy%spring - energy%damping - energy%axial
    end function energies
+
+   !> Put a spring on the end of its line that it moves to.
+   subroutine arrive(self, i, rate)
+      class(static_path), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Of the spring, of which only the sign counts
+      real(wp), intent(in) :: rate
+
+      self%arrived(i) = merge(1, -1, rate > 0.0_wp)
+      self%one_way(i) = self%springs%unload_on_reversal(i) /= 0
+      self%k_in(i) = self%springs%k(i)
+      call self%springs%arrive(i, self%arrived(i))
+      self%direction = 0
+   end subroutine arrive
 
    !> Where the path is, for a message.
    pure character(len=80) function state_of(path) result(text)

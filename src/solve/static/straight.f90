@@ -41,9 +41,7 @@ module rbs_solve_static_straight
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
       integer :: ends = 0
-      !> Last motion of the control, its largest value, and the largest share of the path to the
-      !> present target
-      integer :: last_direction = 0
+      !> Largest value of the control, and the largest share of the path to the present target
       real(wp) :: farthest = 0.0_wp, share = 0.0_wp
       !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; motion
       !> of the load since then [m]
@@ -283,7 +281,7 @@ contains
       do j = 1, count
          associate (i => self%near(j))
             d = self%q(i) + self%rate(i)*abs(change)
-            if (is_on_end(self%springs, i, d, self%rate(i))) call arrive(self, i)
+            if (is_on_end(self%springs, i, d, self%rate(i))) call self%arrive(i, self%rate(i))
          end associate
       end do
       associate (line => self%equilibrium)
@@ -330,18 +328,6 @@ contains
 
    end subroutine go
 
-   !> Put a spring on the end of its line.
-   subroutine arrive(self, i)
-      class(straight_path), intent(inout) :: self
-      integer, intent(in) :: i
-
-      self%arrived(i) = merge(1, -1, self%rate(i) > 0.0_wp)
-      self%one_way(i) = self%springs%unload_on_reversal(i) /= 0
-      self%k_in(i) = self%springs%k(i)
-      call self%springs%arrive(i, self%arrived(i))
-      self%direction = 0
-   end subroutine arrive
-
    !> The deformation of the spring that ends the line is exactly that of its end.
    subroutine end_line(self)
       class(straight_path), intent(inout) :: self
@@ -349,7 +335,7 @@ contains
 
       i = self%ends
       ! If `go` has already moved it there, the line has ended.
-      if (self%direction /= 0 .and. i > 0) call arrive(self, i)
+      if (self%direction /= 0 .and. i > 0) call self%arrive(i, self%rate(i))
       self%direction = 0
    end subroutine end_line
 
