@@ -382,7 +382,7 @@ class FrameResult(Rows):
         parts = self.frame.parts
         at = index_of(name, parts.members, "member")
         springs, deformation, force, ductility = [], [], [], []
-        for spring, values, forces in self._springs():
+        for spring, values, forces in self._springs:
             if spring.member != name or spring.group == "panel":
                 continue
             springs.append(spring)
@@ -413,7 +413,7 @@ class FrameResult(Rows):
     def _plastic(self, name: str, turned: Array) -> Array:
         """Return rotations beyond those at the first yield of an end to each side."""
         found = np.zeros_like(turned)
-        for spring, values, _ in self._springs():
+        for spring, values, _ in self._springs:
             at_end = spring.position in (0.0, 1.0)
             if (spring.member, spring.group, at_end) != (name, "flexure", True):
                 continue
@@ -427,7 +427,9 @@ class FrameResult(Rows):
                     found[:, end] += way * beyond
         return found
 
+    @cached_property
     def _springs(self) -> list[tuple[FrameSpring, Array, Array]]:
+        """Springs with their deformations and forces, in the order of the groups."""
         springs = self.springs
         return [
             (spring, springs[deformation][:, i], springs[force][:, i])
@@ -441,6 +443,21 @@ class FrameResult(Rows):
         rows = np.flatnonzero(point.side * values >= _REACHED * point.deformation)
         return int(rows[0]) if rows.size else None
 
+    @cached_property
+    def _of_layers(self) -> dict[int, list[tuple[float, list[Landmark]]]]:
+        """Landmarks of the layers of joints that were asked for, by the identity of the joint."""
+        return {}
+
+    @cached_property
+    def _openings(self) -> dict[tuple[str, float], Array]:
+        """Openings of joints of layers, by member and position."""
+        joints = self.frame.parts.springs_of("axial_spring")
+        return {
+            (one.member, one.position): self.springs["opening"][:, i]
+            for i, one in enumerate(joints)
+            if one.rule == "layered"
+        }
+
     def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, int | None]]:
         """Return where layers of a joint yield in tension and spall, for each way that it turns."""
         made = (
@@ -450,23 +467,15 @@ class FrameResult(Rows):
         )
         if not isinstance(made, Layered):
             return []
-        joints = self.frame.parts.springs_of("axial_spring")
-        at = next(
-            i
-            for i, one in enumerate(joints)
-            if (one.rule, one.member, one.position) == ("layered", spring.member, spring.position)
-        )
-        opening = self.springs["opening"][: rotation.size, at]
+        opening = self._openings[spring.member, spring.position][: rotation.size]
         first: dict[tuple[LandmarkName, Literal[1, -1]], int] = {}
-        outer = min(y for y, _ in made.layers), max(y for y, _ in made.layers)
-        for y, layer in made.layers:
-            points = [point for point in layer.landmarks() if point.name == "yield"]
-            if isinstance(layer, ConcreteSpring) and y in outer:
-                gone = layer.d_peak + (layer.f_peak - layer.f_res) / layer.k_soft
-                points = [Landmark("spalling", -1, gone, "d_peak + (f_peak - f_res)/k_soft")]
+        # Equal members share their joints.
+        if id(made) not in self._of_layers:
+            self._of_layers[id(made)] = _points_of_layers(made)
+        for y, points in self._of_layers[id(made)]:
             for point in points:
                 row = self._reached(point, opening + y * rotation)
-                if row is not None and (point.side > 0) == (point.name == "yield"):
+                if row is not None:
                     side: Literal[1, -1] = 1 if rotation[row] >= 0 else -1
                     key = point.name, side
                     first[key] = min(first.get(key, row), row)
@@ -485,7 +494,7 @@ class FrameResult(Rows):
         spring is a row of its own; else it is that of the first row kept beyond it.
         """
         found: list[tuple[str, float, dict[str, Any]]] = []
-        for spring, whole, _ in self._springs():
+        for spring, whole, _ in self._springs:
             # A lost member moves on without reaching anything.
             values = whole[: self._lost_at().get(spring.member)]
             points = [
@@ -538,7 +547,7 @@ class FrameResult(Rows):
                 continue
             drift = np.abs(self._chord(self.frame.geometry[name]))
             failed = drift >= (np.inf if kind.shear_drift is None else kind.shear_drift)
-            for spring, values, _ in self._springs():
+            for spring, values, _ in self._springs:
                 if spring.member == name and spring.group == "shear":
                     for point in self.frame.landmarks[spring]:
                         if point.name == "yield":
@@ -578,6 +587,21 @@ class FrameResult(Rows):
             f"peak displacement {about['peak_displacement']:.4g} m, "
             f"peak base shear {about['peak_base_shear']:.4g} N, {len(self.events)} limit states)"
         )
+
+
+def _points_of_layers(made: Layered) -> list[tuple[float, list[Landmark]]]:
+    """Return where layers yield in tension, and outer layers of concrete spall, by their places."""
+    outer = min(y for y, _ in made.layers), max(y for y, _ in made.layers)
+    found = []
+    for y, layer in made.layers:
+        if isinstance(layer, ConcreteSpring) and y in outer:
+            gone = layer.d_peak + (layer.f_peak - layer.f_res) / layer.k_soft
+            points = [Landmark("spalling", -1, gone, "d_peak + (f_peak - f_res)/k_soft")]
+        else:
+            points = [one for one in layer.landmarks() if one.name == "yield" and one.side > 0]
+        if points:
+            found.append((y, points))
+    return found
 
 
 def span_note(result: FrameResult) -> str:
