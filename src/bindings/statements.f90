@@ -49,7 +49,7 @@ contains
          logical :: ok
 
          last = index(line//tab, tab)
-         call setter%open(line(:last - 1), '', messages, ok)
+         call setter%open(line(:last - 1), '', 0, messages, ok)
          do while (ok .and. last <= len(line))
             first = last + 1
             last = index(line(first:), tab) + first - 1

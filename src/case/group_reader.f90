@@ -75,11 +75,13 @@ module rbs_case_group_reader
 contains
 
    !> Open a group, after a check of its name and of how often it appears.
-   subroutine open(self, group, where, messages, ok)
+   subroutine open(self, group, where, line, messages, ok)
       class(group_reader), intent(inout) :: self
       character(len=*), intent(in) :: group
       !> For messages, may be blank
       character(len=*), intent(in) :: where
+      !> Of the file, 0 without one
+      integer, intent(in) :: line
       type(message_list), intent(inout) :: messages
       logical, intent(out) :: ok
       integer :: i, group_index, known
@@ -110,7 +112,7 @@ contains
       ok = messages%count == known
       if (.not. ok) return
       if (self%is_spring()) then
-         call self%entries%add(group, where)
+         call self%entries%add(group, where, line)
          self%rule_keys = [key_type ::]
       else
          call self%case%open_group(group)

@@ -41,7 +41,7 @@ contains
          keys = v%keys(:v%count)
       else
          reader%of_section = of_section
-         call reader%open(group, '', messages, ok)
+         call reader%open(group, '', 0, messages, ok)
          keys = reader%keys
       end if
    end subroutine group_keys

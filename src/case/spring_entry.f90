@@ -53,9 +53,11 @@ module rbs_case_spring_entry
 contains
 
    !> Append an empty entry.
-   subroutine add(self, group, where)
+   subroutine add(self, group, where, line)
       class(entry_list), intent(inout) :: self
       character(len=*), intent(in) :: group, where
+      !> Of the file, 0 without one
+      integer, intent(in) :: line
       type(spring_entry), allocatable :: longer(:)
 
       if (.not. allocated(self%entry)) allocate (self%entry(8))
@@ -67,22 +69,8 @@ contains
       self%count = self%count + 1
       self%entry(self%count)%group = group
       self%entry(self%count)%where = where
-      self%entry(self%count)%spring%line = line_of(where)
+      self%entry(self%count)%spring%line = line
    end subroutine add
-
-   !> The number at the end of a place such as 'case.nml line 4:'; 0 without one.
-   pure integer function line_of(where) result(line)
-      character(len=*), intent(in) :: where
-      integer :: first, last, stat
-
-      line = 0
-      last = verify(where, ' :', back=.true.)
-      if (last == 0) return
-      first = verify(where(:last), '0123456789', back=.true.) + 1
-      if (first > last) return
-      read (where(first:last), *, iostat=stat) line
-      if (stat /= 0) line = 0
-   end function line_of
 
    !> The keys of a spring, or of the layers of joints.
    subroutine visit(self, v, rule_keys)

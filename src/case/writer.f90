@@ -165,7 +165,7 @@ contains
             end do
             layers%layer(i) = j
             if (j <= layer_springs%count) cycle
-            call layer_springs%add('layer_spring', '')
+            call layer_springs%add('layer_spring', '', 0)
             layer_springs%entry(j)%id = j
             layer_springs%entry(j)%spring = layer
             call write_spring(layer_springs%entry(j))

@@ -81,7 +81,7 @@ contains
          integer :: i, pass
          logical :: ok
 
-         call reader%open(group%name, scanned%location(group%line), messages, ok)
+         call reader%open(group%name, scanned%location(group%line), group%line, messages, ok)
          if (.not. ok) return
          do pass = 1, 2
             do i = group%first, group%last

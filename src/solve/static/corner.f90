@@ -25,8 +25,8 @@ module rbs_solve_static_corner
    !> Efforts of the search for a way forward.
    integer, parameter :: if_stable = 1, by_blocks = 2, to_the_end = 3
 
-   !> Share by which rates differ that are not equal, and share of the rate before that is round-off.
-   real(wp), parameter :: same_rate = 1.0e-9_wp, round_off = 1.0e-11_wp
+   !> Share by which rates differ that are not equal, and share of the rate before that is none.
+   real(wp), parameter :: same_rate = 1.0e-9_wp, no_rate = 1.0e-11_wp
 
 contains
 
@@ -269,7 +269,7 @@ contains
          integer, intent(in) :: direction
 
          call path%solve_line(direction, found)
-         if (found) where (abs(path%rate(:m)) < round_off*gap) path%rate(:m) = 0.0_wp
+         if (found) where (abs(path%rate(:m)) < no_rate*gap) path%rate(:m) = 0.0_wp
       end subroutine find_rates
 
       !> Springs that have come to closed ends leave their lines.
