@@ -510,6 +510,31 @@ def test_buildings_go_one_way(rng: Rng) -> float:
     return max(one_way(run, ordered), one_way(run, follow(made, path * (1 + 1e-15))))
 
 
+@relation(60, judged=0.9, bar=1e-9)
+def test_a_plastic_mechanism_keeps_its_limit_load(rng: Rng) -> float:
+    """Beyond the last hinge the force of a push-over stays, however far it goes."""
+
+    def plastic(moment: float) -> FrameMember:
+        stiffness = moment * between(rng, 60, 400)
+        area = stiffness / MODULUS * between(rng, 30, 200)
+        return FrameMember(
+            modulus=MODULUS, area=area, inertia=stiffness / MODULUS, yield_moment=moment
+        )
+
+    made = Frame.grid(
+        [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 4))],
+        [between(rng, 3, 8) for _ in range(rng.integers(1, 4))],
+        columns=plastic(between(rng, 1e5, 6e5)),
+        beams=plastic(between(rng, 1e5, 5e5)),
+        floor_mass=2e4,
+        base=str(rng.choice(["fixed", "pinned"])),
+    )
+    run = rbsdem.pushover(made, drift=0.5)
+    limit = run.force.max()
+    late = run.force[run.displacement > 0.6 * run.displacement[-1]]
+    return float(np.abs(late - limit).max() / limit)
+
+
 @relation(40, judged=0.5)
 def test_cut_and_restart(rng: Rng) -> float:
     """A path in two parts has the bits of one."""
