@@ -468,8 +468,10 @@ def fit_bands(found: Sequence[Outcome]) -> None:
         own = [i for i, one in enumerate(found) if one.test.failure == name]
         print(f"| {name} | {len(own)} | {held[own].mean():.2f} | {inside[own].mean():.2f} |")
     widths, peaks = [], []
+    like: list[int] = []
     for group, name in enumerate(GROUPS):
-        like = [j for j in range(len(found)) if groups[j] == group]
+        # No slender wall failed in shear: these have the numbers of squat ones.
+        like = [j for j in range(len(found)) if groups[j] == group] or like
         widths.append(float(np.quantile(np.concatenate([beside[j].needed for j in like]), HELD)))
         peaks.append(tuple(float(x) for x in np.quantile(ratio[like], ends)))
         print(f"{name}: {len(like)} walls, width {widths[-1]:.3f}, largest force {peaks[-1]}")

@@ -326,3 +326,24 @@ def test_drift_capacity_of_a_wall_by_hand():
     assert values["aci_318.wall_shear"] == pytest.approx(shear)
     assert values["walls.drift"] == pytest.approx(0.078 * (2.0 * axis / 0.15**2) ** -0.41)
     assert set(values.names()) == {"aci_318.wall_shear", "aci_318.wall_drift", "walls.drift"}
+
+
+@pytest.mark.filterwarnings("ignore:member")
+def test_acceptance_of_walls_needs_their_limits():
+    """No public source confirms the tables: the wall is named, and judged by what is given."""
+    push = rbsdem.pushover(building(), drift=0.01)
+    with pytest.raises(rbsdem.InputError, match=r"C-2-1, .* limits=\{'C-2-1': rotations of IO"):
+        rbsdem.codes.assess(push)
+    made = rbsdem.codes.assess(push, limits={"C-2-*": (0.005, 0.010, 0.015)})
+    rows = made.to_pandas()
+    own = rows[rows["member"] == "C-2-1"]
+    assert set(own["source"]) == {"limits that were given"}
+    assert own["shear_strength_N"].isna().all()
+
+
+def test_bands_of_walls_are_their_own():
+    """Wider than those of columns: walls scatter more from laboratory to laboratory."""
+    path = 4.56 * np.linspace(0.0, 0.02, 40)
+    band = rbsdem.peer.band(rbsdem.section.wall(wall(), 4.56, axial_load=LOAD), path)
+    assert band.peak_force.lower / band.peak_force.value == pytest.approx(0.78, abs=0.01)
+    assert (band.lower < band.force).all()

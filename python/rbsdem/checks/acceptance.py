@@ -21,7 +21,7 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.checks import formulas
 from rbsdem.errors import InputError
-from rbsdem.model.frame import MemberGeometry
+from rbsdem.model.frame import FrameMember, MemberGeometry
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import RectangularSection, Section, TeeSection
 from rbsdem.section.strength import nominal_moment
@@ -464,7 +464,8 @@ def assess(
     Raises
     ------
     InputError
-        If the frame has no sections, or the curve ends before the target.
+        If the frame has no sections, the curve ends before the target, or the limits of a wall are
+        not given.
 
     Notes
     -----
@@ -490,6 +491,13 @@ def assess(
         )
     levels = LEVELS[code]
     own = _given(limits, found, levels)
+    walls = {name for name, kind in result.frame.kinds.items() if _is_wall(kind)}
+    without = sorted({d.member for d in found} & walls - set(own))
+    if without:
+        raise InputError(
+            f"assess: {', '.join(without)}: no limits of walls are known here that a public source "
+            f"confirms; give limits={{{without[0]!r}: rotations of {', '.join(levels)}}} [rad]"
+        )
     if code == "asce_41":
         # Joints are judged by their rotation, and a rigid one has none.
         found = [d for d in found if d.end != "joint"]
@@ -498,7 +506,8 @@ def assess(
         status = "evaluated"
         bound = _Limits(d.rotation, math.nan, (math.nan,) * len(levels), math.nan, "")
         try:
-            bound = _asce_41(d, kappa) if code == "asce_41" else _en_1998_3(d, first)
+            if d.member not in walls:
+                bound = _asce_41(d, kappa) if code == "asce_41" else _en_1998_3(d, first)
         except InputError as error:
             status = str(error)
         if d.member in own:
@@ -528,6 +537,10 @@ def assess(
             }
         )
     return Assessment(code, levels, result, place, made)
+
+
+def _is_wall(kind: FrameMember) -> bool:
+    return kind.sections is not None and any(one.shape == "wall" for one in kind.sections)
 
 
 def _given(

@@ -25,7 +25,7 @@ from rbsdem.model.column import Column, Damping, notes_off
 from rbsdem.model.frame import FrameMember, FrameNode, Member
 from rbsdem.model.materials import Concrete, Steel, Ties
 from rbsdem.model.shape import RectangularSection
-from rbsdem.model.springs import Bilinear, Elastic, Spring
+from rbsdem.model.springs import Bilinear, Compression, Elastic, Layered, Spring
 from rbsdem.run.analysis import modes
 from rbsdem.run.result import cyclic, pushover, time_history
 from rbsdem.section.building import Frame
@@ -206,6 +206,34 @@ def plastic_sway() -> list[float]:
     column = FrameMember(30e9, 1e3, 2e-3, yield_moment=2e5)
     portal = Frame.grid([3.0], [6.0], columns=column, beams=FrameMember(30e9, 1e3, 2e-3))
     return [pushover(portal, drift=0.1).base_shear.max() * 3.0 / 2e5]
+
+
+def coupled_walls() -> list[float]:
+    """Return the limit load of two walls of 2 m, four storeys, whose beams yield [N]."""
+    foot = FrameMember(30e9, 0.5, 0.15, yield_moment=1.2e6)
+    beam = FrameMember(30e9, 0.12, 9e-4, yield_moment=0.15e6, rigid_end=(1.0, 1.0))
+    nodes = [FrameNode(f"N-1-{i}", push_x=0.1 * i) for i in range(1, 5)]
+    columns = {(0, 0): FrameMember(30e9, 0.5, 0.15), (0, 1): foot}
+    grid = Frame.grid([3.0] * 4, [3.5], columns=columns, beams=beam, nodes=nodes, pattern="nodes")
+    return [pushover(grid, drift=0.02).base_shear.max()]
+
+
+def coupled_continuum() -> list[float]:
+    """Return the displacement of the top of two elastic walls of 20 storeys [mm]."""
+    walls = {(i, 0): FrameMember(36e9, 0.3 * b, 0.3 * b**3 / 12) for i, b in ((1, 5.0), (2, 7.0))}
+    beam = FrameMember(36e9, 0.3 * 0.4, 0.3 * 0.4**3 / 12, rigid_end=(2.5, 3.5))
+    nodes = [FrameNode(f"N-1-{i}", push_x=(1.0 if i < 20 else 0.5) / 19.5) for i in range(1, 21)]
+    grid = Frame.grid([2.8] * 20, [8.0], columns=walls, beams=beam, nodes=nodes, pattern="nodes")
+    return [1e3 * pushover(grid, force=16.5e3 * 2.8 * 19.5, points=1).displacement[-1]]
+
+
+def rocking_wall() -> list[float]:
+    """Return the force of a wall without bars that rocks on 200 layers at 2 % drift [kN]."""
+    length, layers = 1.2192, 200
+    places = length * ((np.arange(layers) + 0.5) / layers - 0.5)
+    foot = Layered([(float(y), Compression(1e12)) for y in places])
+    wall = Column(3.66, 1.0, axial_load=378e3, shear=Elastic(1e15), flexure=foot)
+    return [1e-3 * pushover(wall, drift=0.02).force.max()]
 
 
 def lost_column() -> list[float]:
@@ -570,6 +598,12 @@ PROBLEMS: list[Problem] = [
             "moment [N m], displacement [m]", "1126.5 0.169134", slender),
     Problem("Sway mechanism of a portal", "limit analysis, 4 M_p/h", "load over M_p/h",
             "4.00000000", plastic_sway),
+    Problem("Coupled walls, plastic", "limit analysis, (2 M_w + 8 M_b l/b)/(share x height)",
+            "load [N]", "577777.78", coupled_walls),
+    Problem("Coupled walls, elastic", "Stafford Smith and Coull 1991, continuous medium",
+            "top [mm]", "14.01", coupled_continuum, "the floors are discrete", 5e-3),
+    Problem("Wall that rocks", "closed form, N (l_w/2 - l_w/400)/H", "force [kN]", "62.644",
+            rocking_wall),
     Problem("Loss of a column, three floors", "limit analysis, 3 x 4 M_p/L", "load over M_p/L",
             "12.0000000", lost_column),
     Problem("Square section, eight bars", "program concreteproperties 0.7.0, ACI 318",

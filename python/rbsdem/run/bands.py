@@ -98,13 +98,16 @@ class Scatter:
 
 
 @cache
-def scatter_of_tests() -> Scatter:
+def scatter_of_tests(*, walls: bool = False) -> Scatter:
     """Return the scatter of tests about the model with the parameters of its version.
+
+    That of walls is found by `studies/walls_measured.py`; degradation and work of walls have that
+    of columns, as too few loops of walls are known.
 
     `studies/spread_table.py` finds the numbers on tests that the fit did not see, and prints how
     many points of such tests lie within the bands.
     """
-    given = json.loads(_package.text("layered_spread.json"))
+    given = json.loads(_package.text("wall_spread.json" if walls else "layered_spread.json"))
     return Scatter(**{name: _frozen(value) for name, value in given.items()})
 
 
@@ -336,7 +339,8 @@ def band(
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
     warnings = column.warnings
     if scatter is None:
-        scatter, made = scatter_of_tests(), column._drawing.parameters
+        walls = column._drawing.section.shape == "wall"
+        scatter, made = scatter_of_tests(walls=walls), column._drawing.parameters
         if not has_bands(made.version):
             raise InputError(
                 f"band: no tests were left out of the fit of version {made.version!r}; there are "
