@@ -25,6 +25,7 @@ from rbsdem.model.column import Footing as Footing
 from rbsdem.model.frame import FrameMember as FrameMember
 from rbsdem.model.materials import Bars as Bars
 from rbsdem.model.materials import Concrete as Concrete
+from rbsdem.model.materials import Lap as Lap
 from rbsdem.model.materials import Layout as Layout
 from rbsdem.model.materials import Spiral as Spiral
 from rbsdem.model.materials import Steel as Steel

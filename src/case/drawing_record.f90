@@ -18,9 +18,9 @@ module rbs_case_drawing_record
    public :: drawing_record
 
    !> The groups of a drawing.
-   character(len=12), parameter, public :: drawing_groups(13) = [character(len=12) :: &
+   character(len=12), parameter, public :: drawing_groups(14) = [character(len=12) :: &
       'drawing', 'section', 'concrete', 'steel', 'bars', 'row', 'layout', 'inner_layout', 'ties', 'spiral', &
-      'boundary', 'curtain', 'parameter']
+      'boundary', 'curtain', 'lap', 'parameter']
 
    !> Bars by number and diameter, on the faces of a rectangle or around a circle.
    type, extends(visited_record) :: layout_record
@@ -43,6 +43,13 @@ module rbs_case_drawing_record
    contains
       procedure :: visit => visit_row
    end type row_record
+   !> A lap of the bars at the foot of a column.
+   type, extends(visited_record) :: lap_record
+      real(wp) :: length = unset, development_length = unset
+   contains
+      procedure :: visit => visit_lap
+   end type lap_record
+
    !> Bars of the web of a wall, as a mesh.
    type, extends(visited_record) :: curtain_record
       character(len=10) :: direction = 'vertical'
@@ -67,6 +74,7 @@ module rbs_case_drawing_record
       !> In place of bars one by one: rows along the faces, or along the hoops, and along those around a void
       type(row_record), allocatable :: rows(:)
       type(layout_record), allocatable :: layout, inner_layout
+      type(lap_record), allocatable :: lap
       !> Version of the parameters of the layered model
       character(len=32) :: version = ''
       !> From an end to where the moment is zero [m], the axial load [N], bodies of that part
@@ -114,6 +122,8 @@ contains
          allocate (self%layout)
       case ('inner_layout')
          allocate (self%inner_layout)
+      case ('lap')
+         allocate (self%lap)
       case ('ties')
          self%section%hoops%kind = ties
       case ('spiral')
@@ -141,6 +151,7 @@ contains
       if (group == 'curtain') number = size(self%curtains)
       if (group == 'layout') number = merge(1, 0, allocated(self%layout))
       if (group == 'inner_layout') number = merge(1, 0, allocated(self%inner_layout))
+      if (group == 'lap') number = merge(1, 0, allocated(self%lap))
       if (group == 'ties') number = merge(1, 0, self%section%hoops%kind == ties)
       if (group == 'spiral') number = merge(1, 0, all(self%section%hoops%kind /= [no_ties, ties]))
    end function count_of
@@ -171,6 +182,8 @@ contains
          call self%layout%visit(v)
       case ('inner_layout')
          call self%inner_layout%visit(v)
+      case ('lap')
+         call self%lap%visit(v)
       case ('ties', 'spiral')
          call self%section%hoops%visit(v)
       case ('parameter')
@@ -232,6 +245,15 @@ contains
       call v%key('steel', self%steel, '', any_number, 'number of their steel; without it the first', &
                  optional=.true.)
    end subroutine visit_row
+   subroutine visit_lap(self, v)
+      class(lap_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('length', self%length, 'm', above_zero, 'length of the lap')
+      call v%key('development_length', self%development_length, 'm', above_zero, 'development length '// &
+                 'of the bars; without it that of ACI 318-19', optional=.true.)
+   end subroutine visit_lap
+
    subroutine visit_curtain(self, v)
       class(curtain_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -275,6 +297,7 @@ contains
       call self%section%validate(messages)
       call check_layout(self%section, 'layout', self%layout, messages)
       call check_layout(self%section, 'inner_layout', self%inner_layout, messages)
+      if (allocated(self%lap)) call self%lap%check('lap', messages)
       if (allocated(self%layout) .and. allocated(self%section%bars%y)) then
          call messages%add('bars: there is a layout too; give one of them')
       end if

@@ -102,6 +102,7 @@ FRAMED = """\
 &node name = 'A', x = 14.0, y = 3.2, support = 'roller' /
 &member name = 'M', from = 'N-3-1', to = 'A', kind = 'C' /
 """
+INFILL = "&infill name = 'I', thickness = 0.2, fm = 2e6 /\n&infill_of bay = 1, kind = 'I' /\n"
 LOSS = "&loss member = 'M' /\n"
 STRIP = "rule = 'concrete', k = 2e9, f_peak = 6e5, d_peak = 6e-4, k_soft = 4e7"
 LAYER_SPRINGS = [f"id = 1, {STRIP}", "id = 2, rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 0"]
@@ -420,8 +421,8 @@ def test_a_key_refuses_what_it_cannot_take(folder, case_text, group):
         text = case_text(**LAYERED, layer_spring=LAYER_SPRINGS)
     elif group in DRAWN_OF:
         text = rbsdem.section.column(DRAWN_OF[group], 3.0, axial_load=1e6).to_namelist() + LOADING
-    elif f"&{group} " not in text and f"&{group} " in FRAMED + LOSS:
-        text = FRAMED + LOSS * (group == "loss") + LOADING
+    elif f"&{group} " not in text and f"&{group} " in FRAMED + LOSS + INFILL:
+        text = FRAMED + LOSS * (group == "loss") + INFILL * ("infill" in group) + LOADING
     elif f"&{group} " not in text and f"&{group} " in DRAWN:
         text = DRAWN
     for key in KEYS["groups"][group]:

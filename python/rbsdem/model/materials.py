@@ -455,6 +455,63 @@ class Ties:
 
 
 @dataclass(frozen=True)
+class Lap:
+    """Bars that are lapped with short ones at the foot of a column.
+
+    In tension they reach f_s = 1.25 (l_b/l_d)^(2/3) f_y, at most f_y, and do not harden beyond it:
+    the form of ASCE 41-17, 10.3.5, from memory; check it with your code. That the lap loses its
+    strength after that is not modelled. Bars in compression are limited alike.
+
+    Parameters
+    ----------
+    length : float
+        l_b, of the lap [m].
+    development_length : float, optional
+        l_d of your code [m]. By default that of ACI 318-19, 25.4.2.4, without hoops (K_tr = 0) and
+        for bars at the bottom (from memory, too): f_y psi_s/(1.1 sqrt f'c min(c_b/d_b, 2.5)) d_b in
+        MPa, c_b from the surface to the axis of the bar, psi_s = 0.8 up to 19 mm.
+
+    Raises
+    ------
+    InputError
+        If a number is refused.
+    """
+
+    length: float
+    development_length: float | None = None
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "lap")
+        _check_positive(self, "lap", length="m")
+        if self.development_length is not None:
+            _check_positive(self, "lap", development_length="m")
+
+    def developed(self, yield_stress: float, fc: float, diameter: float, axis: float) -> float:
+        """Return l_b/l_d.
+
+        Parameters
+        ----------
+        yield_stress, fc : float
+            Of bars and concrete [Pa].
+        diameter : float
+            Of the bars [m].
+        axis : float
+            From the surface of the concrete to the axis of a bar [m].
+        """
+        needed = self.development_length
+        if needed is None:
+            size = 0.8 if diameter <= 0.0195 else 1.0
+            cover = min(axis / diameter, 2.5)
+            needed = 1e-6 * yield_stress * size / (1.1 * (1e-6 * fc) ** 0.5 * cover) * diameter
+        return self.length / needed
+
+    def statement(self) -> _core.Statement:
+        """Return the keys of the lap with their values."""
+        names = ("length", "development_length")
+        return _core.group("lap", {name: getattr(self, name) for name in names})
+
+
+@dataclass(frozen=True)
 class Spiral:
     """A spiral, or circular hoops.
 

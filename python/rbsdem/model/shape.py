@@ -23,6 +23,7 @@ from rbsdem.model.materials import (
     Bar,
     Bars,
     Concrete,
+    Lap,
     Layout,
     Spiral,
     Steel,
@@ -283,7 +284,10 @@ class Section(_Fields, ABC):
         laid_out = {name: layout for name, layout in layouts.items() if layout is not None}
         values = ((field.name, getattr(self, field.name)) for field in fields(self))
         sizes = {name: given(value) for name, value in values if isinstance(value, int | float)}
-        return self._stated(sizes | self._sizes(), () if self.laid_out else self.bars, laid_out)
+        bars = () if self.laid_out else self.bars
+        made = self._stated(sizes | self._sizes(), bars, laid_out)
+        lap: Lap | None = getattr(self, "lap", None)
+        return made if lap is None else made + lap.statement()
 
     def _stated(
         self, sizes: Mapping[str, Any], bars: Sequence[Bar], layouts: Mapping[str, Layout]
@@ -314,6 +318,11 @@ class Section(_Fields, ABC):
     def hooped(self) -> tuple[float, float]:
         """Depths from the faces y < 0 and y > 0 within which hoops hold the bars [m]."""
         return 0.5 * self.depth, 0.5 * self.depth
+
+    def lapped(self, steel: Steel) -> float:
+        """Return the share of the yield stress of a steel that a lap of its bars develops."""
+        del steel
+        return 1.0
 
     @property
     def confines(self) -> bool:
@@ -464,6 +473,8 @@ class RectangularSection(Section):
         Bars of each side, at equal distances between the outer rows above and below.
     steel : Steel, optional
         Steel of the rows.
+    lap : Lap, optional
+        Lap of the bars at the foot of a column; not in a column in double curvature.
 
     Raises
     ------
@@ -506,6 +517,7 @@ class RectangularSection(Section):
     bottom: Bars | Sequence[Bars] = ()
     side: Bars | None = None
     steel: Steel | None = None
+    lap: Lap | None = None
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "section")
@@ -528,6 +540,16 @@ class RectangularSection(Section):
     @property
     def _web(self) -> float:
         return float(self.side_wall or 0.0)
+
+    def lapped(self, steel: Steel) -> float:
+        """Return the share of the yield stress of a steel that its lap develops."""
+        if self.lap is None:
+            return 1.0
+        diameter = float(self.bar_diameter or 0.0)
+        tie = self.ties.diameter if self.ties else 0.0
+        axis = min(self.cover, float(self.side_cover or 0.0)) + tie + 0.5 * diameter
+        developed = self.lap.developed(steel.fy, self.concrete.fc, diameter, axis)
+        return float(min(1.25 * developed ** (2.0 / 3.0), 1.0))
 
     @property
     def rows(self) -> list[tuple[str, Bars]]:

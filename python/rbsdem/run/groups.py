@@ -10,7 +10,7 @@ from rbsdem import _core
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import SPRING_GROUPS, Column, Damping
 from rbsdem.model.frame import FrameMember, FrameNode, Member, places_of, with_rigid_end
-from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
+from rbsdem.model.materials import Bars, Concrete, Lap, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
@@ -38,7 +38,9 @@ _OF_FLOORS = ("dead_load", "live_load", "mass")
 #: Keys of the location of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")
 #: Classes of the groups that refer to steels.
-_PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
+_PARTS: dict[str, type] = {
+    "layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral, "lap": Lap
+}  # fmt: skip
 
 
 def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:

@@ -192,6 +192,7 @@ def column(
     round_core = _arguments.boolean(round_core, "round_core")
     if n is not None and not 1 <= _arguments.integer(n, "n") <= MOST_BODIES:
         raise InputError(f"n = {n} must be from 1 to {MOST_BODIES}")
+    _check_lap(section, top)
     # The half between an end and the point of contraflexure is a cantilever.
     halves = 2 if top == "fixed" else 1
     height = column_length(height, "height") / halves
@@ -224,6 +225,25 @@ def column(
     if top == "fixed":
         made = made.double_curvature()
     return made if footing is None else replace(made, footing=footing)
+
+
+def _check_lap(section: Section, top: Top) -> None:
+    """Refuse a lap at both ends, and say what one at the foot does not do."""
+    lap = getattr(section, "lap", None)
+    if lap is None:
+        return
+    if top == "fixed":
+        raise InputError(
+            "column: lap is at the foot alone, and in double curvature both ends would have it; "
+            "make it a member of a frame (section.member)"
+        )
+    share = min(section.lapped(steel) for _, _, steel in section.bars)
+    if share < 1.0:
+        warn(
+            f"lap of {lap.length:g} m: bars are limited to {share:.2f} f_y; loss of strength after "
+            "that is not modelled, and lapped columns lost a fifth of it at less than half of the "
+            "drift of the model"
+        )
 
 
 def member(
@@ -283,6 +303,9 @@ def member(
         raise InputError(
             "member: a wall in a frame has springs of its own M/V; use rbsdem.section.wall_members"
         )
+    if halves[0] == halves[1] and getattr(halves[1], "lap", None) is not None:
+        # Bars of a column are lapped at its foot.
+        halves = halves[0], replace(halves[1], lap=None)  # type: ignore[call-arg]
     if model_parameters is None and not axial_load:
         model_parameters = parameters().with_values(**_BARS_OF_BEAMS)
     length = column_length(length, "length")

@@ -259,7 +259,7 @@ def hinge_joint(
 
     @cache
     def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
-        fy, fu = (given.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
+        fy, fu, hardens = _strength_of(section, steel, given)
         stiffness = steel.es * area / (steel_length + slip)
         return unchecked(
             SteelSpring,
@@ -267,7 +267,8 @@ def hinge_joint(
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
             r0=given.r0 * math.exp(given.r0_stress * (high - 0.15)),
-            **{name: getattr(given, name) for name in ("cr1", "cr2", "isotropic_hardening")},
+            **{name: getattr(given, name) for name in ("cr1", "cr2")},
+            isotropic_hardening=given.isotropic_hardening if hardens else 0.0,
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=_buckling_strain(pressure, ratio) * (steel_length + slip) if buckles else None,
             buckling=given.buckling if buckles else 0.0,
@@ -339,6 +340,15 @@ def wall_buckling_strain(section: Section, axial_load: float, y: float) -> float
     hooped = abs(y) >= 0.5 * section.depth - section.hooped[y > 0]
     pressure = strips_of(section, _STRIPS).hoop_pressure[y > 0] if hooped else 0.0
     return _buckling_strain(pressure, axial_load / (section.concrete.fc * section.gross_area))
+
+
+def _strength_of(
+    section: Section, steel: Steel, given: ModelParameters
+) -> tuple[float, float, bool]:
+    """Return f_y and f_u of bars [Pa], and whether they harden: those in a short lap do not."""
+    fy, fu = (given.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
+    lapped = section.lapped(steel)
+    return (fy, fu, True) if lapped == 1.0 else (lapped * fy, lapped * fy, False)
 
 
 def _yield_moment(section: Section, axial_load: float, ratio: float, stress: float) -> float:

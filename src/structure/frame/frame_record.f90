@@ -59,7 +59,7 @@ module rbs_structure_frame_frame_record
    type, extends(visited_record), public :: infill_record
       character(len=name_length) :: name = ''
       real(wp) :: thickness = unset, fm = unset, opening_length = 0.0_wp, opening_height = 0.0_wp
-      real(wp) :: strength = unset, peak_drift = 0.003_wp
+      real(wp) :: strength = unset, peak_drift = 0.005_wp
    contains
       procedure :: visit => visit_infill
    end type infill_record
