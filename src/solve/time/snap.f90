@@ -12,8 +12,9 @@ submodule (rbs_solve_time_implicit) rbs_solve_time_snap
    real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-9_wp, least_resistance = 1.0e-6_wp, &
                           most_resistance = 1.0e4_wp
 
-   !> Shares of the energy that a step may lose without a jump, and that no jump loses.
-   real(wp), parameter :: far = 0.01_wp, no_loss = 1.0e-5_wp
+   !> Shares of the energy that a step may lose without a jump, and that no jump loses; share of the potential
+   !> that counts as energy, as differences of potentials are known to some 1e-15 of these.
+   real(wp), parameter :: far = 0.01_wp, no_loss = 1.0e-5_wp, of_potential = 1.0e-9_wp
 
 contains
 
@@ -139,7 +140,8 @@ contains
                 - (total(size(work), work) - total(size(work), work_before)) &
                 - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
                 - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
-         energy = abs(total(size(work), work)) + kinetic
+         energy = abs(total(size(work), work)) + kinetic &
+                  + of_potential*abs(structure%potential_energy(state%q))
       end associate
    end subroutine find_loss
 
