@@ -282,7 +282,7 @@ def doors(run_cli, case_text, folder, by_file, capsys) -> dict[str, Tell]:
     def command(given: str) -> list[str]:
         (folder / "case.nml").write_text(case_text(**DYNAMIC))
         assert main(shlex.split(given)[1:]) == 2
-        assert set(os.listdir(folder)) <= {"case.nml", "out", "case-trade"}
+        assert set(os.listdir(folder)) <= {"case.nml", "out"}
         told = capsys.readouterr()
         assert told.out == ""
         return told.err.splitlines()

@@ -96,7 +96,7 @@ AXIAL_FAILURE_FACTORS = (0.5, 2.5)
 """Ends of the 80 % interval of a measured drift at axial failure over that of Elwood and Moehle.
 
 Of rectangular columns of publications that the law has not seen (twins with one drawing differ by a
-factor of up to 2.9); `studies/new_tests.py` prints what they hold.
+factor of up to 2.9); `studies/new_tests.py` prints the scatter of the given ones.
 """
 
 
