@@ -46,6 +46,8 @@ _MARK: Line = {"ls": "none", "color": "black", "ms": 4.5, "mew": 0.8, "zorder": 
 
 _OUTLINE: Line = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
 _TIE: Line = {"facecolor": "0.35", "linewidth": 0.0}
+#: Depth over width from which on a section has no numbers along its width.
+_NARROW = 3.0
 _INSIDE: Line = {"facecolor": "0.93", "linewidth": 0.0}
 _BAR: Line = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
 
@@ -204,6 +206,9 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
         drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
         drawn.set_yticks([-0.5 * h, 0.0, 0.5 * h])
         drawn.set(xlabel="Width (mm)", ylabel="$y$ (mm)")
+        if h > _NARROW * w:  # Numbers of a wall's width would lie on each other.
+            drawn.set_xticks([])
+            drawn.set(xlabel=f"Width {w:g} mm")
         for spine in drawn.spines.values():
             spine.set_visible(False)
     return drawn
