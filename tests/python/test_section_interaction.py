@@ -168,6 +168,35 @@ def test_utilisation():
     assert nominal == pytest.approx(1e5 / diagram.moment_at([0.0, 1e6]))
 
 
+def test_unlike_faces_have_a_strength_each():
+    """Hogging on a beam with its bars below: the side that is pulled counts, not the larger one."""
+    beam = rbsdem.RectangularSection(
+        0.3, 0.5, bars=[(-0.2, 15e-4, STEEL), (0.2, 3e-4, STEEL)], **PLAIN
+    )
+    diagram = rbsdem.section.interaction(beam, "aci318")
+    hogs, sags = (
+        float(each.moment_at(0.0, design=True)) for each in (diagram, diagram.upside_down)
+    )
+    assert sags > 2.5 * hogs
+    assert diagram.utilisation(0.0, 0.9 * sags) == pytest.approx(0.9 * sags / hogs)
+    assert diagram.utilisation(0.0, -0.9 * sags) == pytest.approx(0.9)
+    # Upside down the same with the other sign.
+    turned = rbsdem.section.interaction(beam.mirrored, "aci318")
+    for load, moment in ((0.0, 1e5), (1e6, -2e5), (-3e5, 4e4)):
+        assert turned.utilisation(load, -moment) == pytest.approx(diagram.utilisation(load, moment))
+    # Near its strength in tension the section holds its load with a moment only.
+    load = 0.98 * diagram.design_axial_load[0]
+    least, most = diagram.moment_range(load, design=True)
+    assert least < most < 0
+    assert diagram.utilisation(load, 0.0) > 1
+    assert diagram.utilisation(load, 0.5 * (least + most)) == pytest.approx(0.0)
+    assert diagram.utilisation(load, [least, most]) == pytest.approx([1.0, 1.0])
+    ax = rbsdem.plot.interaction(diagram, demand=[(0.0, -0.9 * sags)])
+    assert ax.get_xlim()[0] < -1e-3 * sags
+    assert ax.lines[-3].get_xdata()[0] == pytest.approx(-0.9e-3 * sags)
+    plt.close(ax.figure)
+
+
 @pytest.mark.parametrize(
     ("fc", "share"),
     [(20e6, 0.85), (28e6, 0.85), (35e6, 0.80), (42e6, 0.75), (56e6, 0.65), (70e6, 0.65)],

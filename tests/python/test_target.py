@@ -326,7 +326,8 @@ def test_refusals(s3):
         (lambda: target(s3, 0.24), "DesignSpectrum"),
         (lambda: target(3.0, demand), "pushover"),
         (lambda: target(s3, demand).check([]), "push-over of a frame"),
-        (lambda: DesignSpectrum.en_1998(2.4 * 9.81), "part of g"),
+        (lambda: DesignSpectrum.en_1998(2.45), "part of g"),
+        (lambda: DesignSpectrum.asce_41(0.9 * 9.81, 0.5), "part of g"),
         (lambda: DesignSpectrum.en_1998(0.2, "F"), "A, B, C, D, E"),
         (lambda: DesignSpectrum.asce_41(0.01, 0.6), "is s_xs in g"),
         (lambda: DesignSpectrum.table([0, 1], [1, np.nan]), "nan"),
@@ -335,6 +336,12 @@ def test_refusals(s3):
     ]:
         with pytest.raises(rbsdem.InputError, match=text):
             call()
+
+
+def test_a_curve_in_other_units_is_told():
+    # In kN beside masses in kg the period of 0.7 s is one of 23 s.
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"period of 23.* no building"):
+        Capacity.of_masses(*S3, [39.08e3] * 3, [0.0483, 0.0920, 0.1217])
 
 
 # ---- frames --------------------------------------------------------------------------------------

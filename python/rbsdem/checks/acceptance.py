@@ -8,7 +8,7 @@ code does not cover a member, its row says why.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import partial
@@ -22,7 +22,7 @@ from rbsdem._types import Array, DataFrame
 from rbsdem.checks import formulas
 from rbsdem.errors import InputError
 from rbsdem.model.frame import FrameMember, MemberGeometry
-from rbsdem.model.frame_result import FrameResult
+from rbsdem.model.frame_result import FAILS, FrameResult
 from rbsdem.model.shape import RectangularSection, Section, TeeSection
 from rbsdem.section.strength import nominal_moment
 
@@ -278,20 +278,22 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
     )
 
 
-def _en_1998_3(d: _Demand, primary: bool) -> _Limits:
+def _en_1998_3(d: _Demand, primary: bool, detailing: float) -> _Limits:
     if "joint" in d.kind:
         return _ec_8_joint(d)
     if d.section.shape != "rectangle":
         raise InputError(f"annex A has no relations for this section ({d.section.shape})")
     turned, sheared = _PRIMARY if primary else (1.0, 1.0)
-    q = formulas.quantities(d.section, d.span, max(d.axial, 0.0))
+    load = max(d.axial, 0.0) if d.kind == "column" else 0.0
+    q = formulas.quantities(d.section, d.span, load)
     cracked = formulas.ec_8_cracks_in_shear(q)
     yielding = formulas.ec_8_yield_rotation(q, cracked=cracked)
-    ultimate = formulas.ec_8_ultimate_rotation(q) / turned
+    ultimate = detailing * formulas.ec_8_ultimate_rotation(q) / turned
     beyond = max(d.rotation / yielding - 1.0, 0.0)
     strength = formulas.ec_8_shear_resistance(q, beyond) / sheared
     limits = (yielding, 0.75 * ultimate, ultimate)
-    return _Limits(d.rotation, yielding, limits, strength, "A.1, A.10b, A.12")
+    source = "A.1, A.10b, A.12" if detailing == 1.0 else f"A.1 x {detailing:g}, A.10b, A.12"
+    return _Limits(d.rotation, yielding, limits, strength, source)
 
 
 def _ec_8_joint(d: _Demand) -> _Limits:
@@ -324,6 +326,8 @@ class Assessment(Tabular):
         Displacement of the control node there [m]; None: the envelope of all rows.
     rows : list of dict
         A row for each end and side; see `to_pandas`.
+    detailing : float
+        Factor of the ultimate rotations of EN 1998-3.
     """
 
     code: str
@@ -331,6 +335,19 @@ class Assessment(Tabular):
     result: FrameResult
     displacement: float | None
     rows: list[dict[str, Any]]
+    detailing: float = 1.0
+
+    @property
+    def assumed(self) -> str:
+        """What the limits take for granted."""
+        if self.code == "asce_41":
+            return "Splices and anchorages are sound (table 10-7, rows iii and iv, are not judged)."
+        if self.detailing == 1.0:
+            return (
+                "Members have seismic detailing and ribbed bars; EN 1998-3 lowers the rotations of "
+                "others (detailing= takes the factor)."
+            )
+        return f"Ultimate rotations are {self.detailing:g} times those of detailed members."
 
     def to_pandas(self) -> DataFrame:
         """Return a row for each end and each face that was in tension, and one for each joint.
@@ -368,11 +385,20 @@ class Assessment(Tabular):
         )
 
     def counts(self) -> dict[str, int]:
-        """Return how many ends are beyond each level, beyond their shear, and not covered."""
-        frame = self.to_pandas()
-        found = {name: int((frame[f"ratio_{name}"] > 1.0).sum()) for name in self.levels}
-        found["shear"] = int((frame["ratio_shear"] > 1.0).sum())
-        found["not evaluated"] = int((frame["status"] != "evaluated").sum())
+        """Return how many ends and joints are beyond each level, in shear, and not covered.
+
+        An end counts once, whatever its two sides and their rows are.
+        """
+
+        def number(beyond: Callable[[dict[str, Any]], bool]) -> int:
+            return len({(row["member"], row["end"]) for row in self.rows if beyond(row)})
+
+        found = {
+            name: number(lambda row, key=f"ratio_{name}": row[key] > 1.0)  # type: ignore[misc]
+            for name in self.levels
+        }
+        found["shear"] = number(lambda row: row["ratio_shear"] > 1.0)
+        found["not evaluated"] = number(lambda row: row["status"] != "evaluated")
         return found
 
     def accepted(self, level: str | None = None) -> bool:
@@ -395,9 +421,14 @@ class Assessment(Tabular):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Explanations that a reader needs: of shear beyond its strength where no spring fails."""
-        ends = sum(row["ratio_shear"] > 1.0 for row in self.rows if row["end"] in ("start", "end"))
+        sheared = {
+            (row["member"], row["end"])
+            for row in self.rows
+            if row["ratio_shear"] > 1.0 and row["end"] in ("start", "end")
+        }
+        ends = len(sheared)
         most = math.inf if self.displacement is None else abs(self.displacement)
-        failures = (one for one in self.result.events if one.name == "shear failure")
+        failures = (one for one in self.result.events if one.name == FAILS)
         if not ends or any(abs(one.displacement) <= most for one in failures):
             return ()
         annex = " (A.12: over gamma_el, with a fifth of the concrete from L_V = 5 h on)"
@@ -420,8 +451,15 @@ class Assessment(Tabular):
         told = ", ".join(
             f"{number} beyond {name}" for name, number in self.counts().items() if number
         )
-        where = "envelope" if self.displacement is None else f"{self.displacement:.4g} m"
-        return f"Assessment({self.code}, {where}, {len(self.rows)} ends: {told or 'all within'})"
+        where = "envelope"
+        if self.displacement is not None:
+            # As targets do, from where the dead load stands.
+            moved = abs(self.displacement - float(self.result.displacement[0]))
+            where = f"{moved:.4g} m beyond the dead load"
+        parts = {(row["member"], row["end"]) for row in self.rows}
+        ends = sum(end in ("start", "end") for _, end in parts)
+        joints = f" and {len(parts) - ends} joints" if len(parts) > ends else ""
+        return f"Assessment({self.code}, {where}, {ends} ends{joints}: {told or 'all within'})"
 
     def __str__(self) -> str:
         return "\n".join((repr(self), *self.warnings))
@@ -434,6 +472,7 @@ def assess(
     at: float | HasTarget | None = None,
     knowledge: float = 1.0,
     primary: bool = True,
+    detailing: float = 1.0,
     limits: Mapping[str, Sequence[float]] | None = None,
 ) -> Assessment:
     """Return the ends of the members of a frame beside the limits of a code.
@@ -451,6 +490,9 @@ def assess(
         kappa of ASCE 41, by which its limits are multiplied.
     primary : bool, optional
         Whether members are primary ones of EN 1998-3: gamma_el of 1.5 and 1.15, else 1.
+    detailing : float, optional
+        Factor of the ultimate chord rotations of EN 1998-3, as for members without seismic
+        detailing or with smooth bars; 1 takes them as detailed, with ribbed bars.
     limits : mapping, optional
         Rotations [rad], one for each level, by names of members and nodes or patterns of them (the
         last that fits counts), in place of those of the code: for members that it does not cover,
@@ -470,18 +512,22 @@ def assess(
     Notes
     -----
     The rotation of an end is that of its face against the chord of the clear length; the shear span
-    is M/V of the end moments, from 1.5 h to the clear length. ASCE 41: plastic rotation beyond
-    M_y L/(6 E I) with the nominal moment and the stiffness of table 10-5; a beam whose shear at
-    yield is above its strength is one of row ii; splices and embedment (rows iii, iv), the factors
-    of force-controlled actions and the limits of joints (table 10-11) are left out: panels of
-    nodes have rows whose limits are to be given, rigid nodes have none. EN 1998-3: the shear of
-    each joint beside its strut (EN 1998-1, 5.5.3.3), not its hoops. Strengths are those of the
-    drawing: give expected ones.
+    is M/V of the end moments, from 1.5 h to the clear length. Beams count as without axial force:
+    the compression of beams that grow between columns is not that of a load. ASCE 41: plastic
+    rotation beyond M_y L/(6 E I) with the nominal moment and the stiffness of table 10-5; a beam
+    whose shear at yield is above its strength is one of row ii; splices and embedment (rows iii,
+    iv), the factors of force-controlled actions and the limits of joints (table 10-11) are left
+    out: panels of nodes have rows whose limits are to be given, rigid nodes have none. EN 1998-3:
+    the shear of each joint beside its strut (EN 1998-1, 5.5.3.3), not its hoops. Strengths are
+    those of the drawing: give expected ones.
     """
     result = _arguments.instance(result, "assess", FrameResult, "as of rbsdem.pushover")
     code = _arguments.choice(code, "assess: code", get_args(AcceptanceCode))
     kappa = _arguments.number(knowledge, "assess: knowledge", above=0.0, most=1.0)
     first = _arguments.boolean(primary, "assess: primary")
+    detailed = _arguments.number(detailing, "assess: detailing", above=0.0, most=1.0)
+    if detailed != 1.0 and code != "en_1998_3":
+        raise InputError("assess: detailing is for 'en_1998_3'; leave it out")
     place, rows = rows_at(result, at)
     found = demands(result, rows)
     if not found:
@@ -507,7 +553,7 @@ def assess(
         bound = _Limits(d.rotation, math.nan, (math.nan,) * len(levels), math.nan, "")
         try:
             if d.member not in walls:
-                bound = _asce_41(d, kappa) if code == "asce_41" else _en_1998_3(d, first)
+                bound = _asce_41(d, kappa) if code == "asce_41" else _en_1998_3(d, first, detailed)
         except InputError as error:
             status = str(error)
         if d.member in own:
@@ -536,7 +582,7 @@ def assess(
                 "status": status,
             }
         )
-    return Assessment(code, levels, result, place, made)
+    return Assessment(code, levels, result, place, made, detailed)
 
 
 def _is_wall(kind: FrameMember) -> bool:

@@ -347,11 +347,11 @@ _EVENTS = {
     ("flexure", "spalling"): "spalling",
     ("shear", "cracking"): "shear_cracking",
     ("shear", "yield"): "shear_yield",
-    ("shear", "cap"): "shear_failure",
     ("infill", "cracking"): "infill_cracking",
     ("infill", "cap"): "infill_peak",
     ("infill", "residual"): "infill_residual",
-    ("member", "shear failure"): "shear_failure",
+    ("shear", "shear_failure"): "shear_failure",
+    ("member", "shear_failure"): "shear_failure",
     ("member", "lost"): "axial_failure",
 }
 

@@ -324,7 +324,7 @@ class IDA(WithFragility):
 
     def __repr__(self) -> str:
         found = self.collapse_intensity[np.isfinite(self.upper)]
-        middle = f", median collapse at {np.median(found):.4g} m/s2" if found.size else ""
+        middle = f", their sample median at {np.median(found):.4g} m/s2" if found.size else ""
         return (
             f"IDA({self.runs.measure.label}: {self.lower.size} curves, {len(self.runs)} runs, "
             f"{found.size} collapses{middle}; {self.seconds:.3g} s)"

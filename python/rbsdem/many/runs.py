@@ -76,7 +76,8 @@ def make_intensity(name: str, column: Structure, period: float | None, damping: 
         return Intensity("pga", 0.0, 0.0)
     at = 1 / float(modes(column).frequency[0]) if period is None else period
     at = _arguments.number(at, "period", above=0, below=100, unit="s")
-    ratio = _arguments.number(damping, "damping")
+    hint = "; it is a ratio, 5 % is 0.05"
+    ratio = _arguments.number(damping, "damping", least=0.0, most=1.0, hint=hint)
     return Intensity("sa_t1" if name == "sa_t1" else "sa_avg", at, ratio)
 
 

@@ -20,7 +20,7 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
 from rbsdem.checks.acceptance import between, rows_at
 from rbsdem.curves.envelope import SOURCES, Envelope, Idealisation, envelope
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.many.ensemble import ensemble
 from rbsdem.model.frame import Frame
 from rbsdem.model.frame_result import FrameResult
@@ -414,6 +414,8 @@ SITES = {"A": 130.0, "B": 130.0, "C": 90.0, "D": 60.0, "E": 60.0, "F": 60.0}
 _CLOSE, _PASSES = 1e-10, 400
 #: Steps over a curve among which the last point of performance is looked for.
 _STEPS = 150
+#: Periods of buildings [s].
+_SHORTEST, _LONGEST = 0.01, 15.0
 #: Share of its force by which a curve is off its first line where that ends.
 _STRAIGHT = 1e-3
 
@@ -469,6 +471,11 @@ class Capacity(Tabular):
         if math.isnan(self.period):
             slow = 2.0 * math.pi * math.sqrt(self.modal_mass / self.stiffness)
             object.__setattr__(self, "period", slow)
+        if not _SHORTEST <= self.period <= _LONGEST:
+            warn(
+                f"Capacity: a period of {self.period:.3g} s is that of no building; displacements "
+                "are in m, forces in N and masses in kg (1 kN is 1e3, 1 t is 1e3)"
+            )
 
     @classmethod
     def of_masses(

@@ -33,6 +33,10 @@ _OVER_YIELD, _OVER_LAYERS = 1.005, 1.05
 #: Share of the strength in shear, and of M/V, from which on an end with another M/V is told.
 _TELLING, _TELLING_OF_WALLS, _OFF_SPAN = 0.5, 0.1, 0.2
 
+#: Name of the event where a member has reached its strength in shear, behind which it falls, and
+#: the rules of springs that do.
+FAILS, _FALLING = "shear_failure", ("peak_oriented", "pinching")
+
 #: A threshold counts as reached within round-off: a path stands on it exactly.
 _REACHED = 1.0 - 1e-9
 
@@ -235,9 +239,8 @@ class FrameResult(Rows):
         ends = self.moment_from[:, at], self.moment_to[:, at]
         lean = np.zeros(self.time.size)
         if self.frame.kinematics == "pdelta":
+            # What a lost member carried leans with the frame still.
             lean = self.frame.parts.compression[at] * self._chord(one)
-        if self.lost is not None:
-            lean = np.where(self.lost[:, at] > 0, 0.0, lean)
         found = []
         for j, sign in enumerate((1.0, -1.0)):
             across = -sign * (one.shear(*ends, float(j)) + lean)
@@ -388,9 +391,13 @@ class FrameResult(Rows):
             springs.append(spring)
             deformation.append(values)
             force.append(forces)
-            kept = values[: self._lost_at().get(name)]
+        path = self._measured
+        for spring, values, _ in path._springs:
+            if spring.member != name or spring.group == "panel":
+                continue
+            kept = values[: path._lost_at().get(name)]
             points = [*self.frame.landmarks[spring]]
-            points += [point for point, _ in self._yields(spring, kept)]
+            points += [point for point, _ in path._yields(spring, kept)]
             yields = [point.deformation for point in points if point.name == "yield"]
             largest = float(np.abs(kept).max(initial=0.0))
             ductility.append(largest / min(yields) if yields else np.nan)
@@ -402,7 +409,7 @@ class FrameResult(Rows):
             np.column_stack(ends),
             np.column_stack([where.shear(*ends, share) for share in (0.0, 1.0)]),
             self.chord_rotation[:, at],
-            self._plastic(name, self.chord_rotation[:, at]),
+            self._plastic(at, self.chord_rotation[:, at]),
             where,
             tuple(springs),
             np.column_stack(deformation) if springs else np.empty(rows),
@@ -410,22 +417,30 @@ class FrameResult(Rows):
             np.array(ductility),
         )
 
-    def _plastic(self, name: str, turned: Array) -> Array:
+    def _plastic(self, at: int, turned: Array) -> Array:
         """Return rotations beyond those at the first yield of an end to each side."""
-        found = np.zeros_like(turned)
-        for spring, values, _ in self._springs:
+        found, path = np.zeros_like(turned), self._measured
+        for spring, values, _ in path._springs:
             at_end = spring.position in (0.0, 1.0)
+            name = self.frame.parts.members[at]
             if (spring.member, spring.group, at_end) != (name, "flexure", True):
                 continue
-            points = [(one, self._reached(one, values)) for one in self.frame.landmarks[spring]]
-            for point, row in [*points, *self._yields(spring, values)]:
+            points = [(one, path._reached(one, values)) for one in self.frame.landmarks[spring]]
+            for point, row in [*points, *path._yields(spring, values)]:
                 if point.name == "yield" and row is not None:
                     end = int(spring.position)
-                    way = np.sign(turned[row, end])
-                    beyond = np.maximum(way * (turned[:, end] - turned[row, end]), 0.0)
-                    beyond[:row] = 0.0
+                    first = _at(row, path.chord_rotation[:, at, end])
+                    way = np.sign(first)
+                    beyond = np.maximum(way * (turned[:, end] - first), 0.0)
+                    beyond[self.time < _at(row, path.time)] = 0.0
                     found[:, end] += way * beyond
         return found
+
+    @property
+    def _measured(self) -> FrameResult:
+        """The rows in which limit states are looked for: all corners of a static path."""
+        path: FrameResult = self.path
+        return path
 
     @cached_property
     def _springs(self) -> list[tuple[FrameSpring, Array, Array]]:
@@ -438,10 +453,17 @@ class FrameResult(Rows):
         ]
 
     @staticmethod
-    def _reached(point: Landmark, values: Array) -> int | None:
-        """Return the first row in which a deformation has reached a landmark."""
-        rows = np.flatnonzero(point.side * values >= _REACHED * point.deformation)
-        return int(rows[0]) if rows.size else None
+    def _reached(point: Landmark, values: Array) -> float | None:
+        """Return where a deformation first reaches a landmark: a row, or between two the share."""
+        beyond = point.side * values - _REACHED * point.deformation
+        rows = np.flatnonzero(beyond >= 0)
+        if not rows.size:
+            return None
+        row = int(rows[0])
+        if not row:
+            return 0.0
+        before, there = beyond[row - 1 : row + 1].tolist()
+        return float(row - there / (there - before))
 
     @cached_property
     def _of_layers(self) -> dict[int, list[tuple[float, list[Landmark]]]]:
@@ -458,7 +480,7 @@ class FrameResult(Rows):
             if one.rule == "layered"
         }
 
-    def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, int | None]]:
+    def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, float | None]]:
         """Return where layers of a joint yield in tension and spall, for each way that it turns."""
         made = (
             self.frame.kinds[spring.member].at(spring.group, spring.position)
@@ -468,7 +490,7 @@ class FrameResult(Rows):
         if not isinstance(made, Layered):
             return []
         opening = self._openings[spring.member, spring.position][: rotation.size]
-        first: dict[tuple[LandmarkName, Literal[1, -1]], int] = {}
+        first: dict[tuple[LandmarkName, Literal[1, -1]], float] = {}
         # Equal members share their joints.
         if id(made) not in self._of_layers:
             self._of_layers[id(made)] = _points_of_layers(made)
@@ -476,11 +498,11 @@ class FrameResult(Rows):
             for point in points:
                 row = self._reached(point, opening + y * rotation)
                 if row is not None:
-                    side: Literal[1, -1] = 1 if rotation[row] >= 0 else -1
+                    side: Literal[1, -1] = 1 if _at(row, rotation) >= 0 else -1
                     key = point.name, side
                     first[key] = min(first.get(key, row), row)
         return [
-            (Landmark(name, side, abs(float(rotation[row])), "first layer"), row)
+            (Landmark(name, side, abs(_at(row, rotation)), "first layer"), row)
             for (name, side), row in first.items()
         ]
 
@@ -488,11 +510,29 @@ class FrameResult(Rows):
     def events(self) -> LimitStates:
         """Limit states of the springs, in the order in which they are reached first.
 
-        Cracking, yield and cap of each side; of drawn members spalling, where an outer layer of
+        Cracking, yield and cap of each side, "shear_failure" where a shear spring that loses its
+        strength behind it has reached that; of drawn members spalling, where an outer layer of
         concrete has lost its strength; of the struts of infills (group "infill") cracking, cap and
-        residual; failures of members. On a path of `pushover` each of a
-        spring is a row of its own; else it is that of the first row kept beyond it.
+        residual; failures of members. A static path is looked at in all of its corners, whichever
+        of its rows were kept (`path`); a response in time in its rows.
         """
+        path = self._measured
+        found = path._found_events()
+        times = np.array([at for _, at, _ in found])
+        rows = np.searchsorted(self.time, times - 1e-12 * np.abs(times))
+        rows = np.minimum(rows, self.time.size - 1)
+        columns = (path.displacement, path.drift, path.loop_force)
+        there = zip(*(np.interp(times, path.time, each).tolist() for each in columns), strict=True)
+        return LimitStates(
+            (
+                LimitState(name, row, at, *values, **where)
+                for (name, at, where), row, values in zip(found, rows.tolist(), there, strict=True)
+            ),
+            self,
+        )
+
+    def _found_events(self) -> list[tuple[str, float, dict[str, Any]]]:
+        """Return name, time and place of the limit states that the rows reach."""
         found: list[tuple[str, float, dict[str, Any]]] = []
         for spring, whole, _ in self._springs:
             # A lost member moves on without reaching anything.
@@ -505,12 +545,18 @@ class FrameResult(Rows):
             where = {"member": spring.member, "group": group}
             where["end"] = "" if group in ("panel", "infill") else end
             found += [
-                (point.name, float(self.time[row]), where | {"side": point.side})
+                (_event_name(spring, point), _at(row, self.time), where | {"side": point.side})
                 for point, row in [*points, *self._yields(spring, values)]
                 if row is not None
             ]
+        sheared = {where["member"]: at for what, at, where in reversed(found) if what == FAILS}
         wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at().items()]
-        wholes += self._failures()
+        # A member whose spring fails in shear is told by that.
+        wholes += [
+            (name, what, at)
+            for name, what, at in self._failures()
+            if what != FAILS or at < sheared.get(name, np.inf)
+        ]
         for what in ("snap", "fall"):
             member = self.summary.get("snap_member" if what == "snap" else "fallen_member")
             if member:
@@ -524,19 +570,7 @@ class FrameResult(Rows):
                 low, high = AXIAL_FAILURE_FACTORS
                 about |= {"lower": low * drift, "upper": high * drift}
             found.append((what, at, about))
-        rows = np.searchsorted(self.time, [at * (1 - 1e-12) for _, at, _ in found])
-        return LimitStates(
-            (
-                LimitState(
-                    name, row, at, float(self.displacement[row]), float(self.drift[row]),
-                    float(self.loop_force[row]), **where,
-                )
-                for (name, at, where), row in zip(
-                    found, np.minimum(rows, self.time.size - 1).tolist(), strict=True
-                )
-            ),
-            self,
-        )  # fmt: skip
+        return found
 
     def _failures(self) -> list[tuple[str, str, float]]:
         """Return members that fail in shear, and that lose their axial load on a static path."""
@@ -554,7 +588,7 @@ class FrameResult(Rows):
                             failed |= point.side * values >= _REACHED * point.deformation
             rows = np.flatnonzero(failed[: lost.get(name)])
             if rows.size:
-                found.append((name, "shear failure", float(self.time[rows[0]])))
+                found.append((name, FAILS, float(self.time[rows[0]])))
             load = np.maximum(self.member_axial[:, at], 0.0)
             falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= kind.failure_drift)
             fallen = np.flatnonzero(falls & np.logical_or.accumulate(failed))
@@ -585,7 +619,7 @@ class FrameResult(Rows):
         return (
             f"FrameResult({about['method']}, {self.time.size} rows, {about['status']}, "
             f"peak displacement {about['peak_displacement']:.4g} m, "
-            f"peak base shear {about['peak_base_shear']:.4g} N, {len(self.events)} limit states)"
+            f"peak base shear {about['peak_base_shear']:.4g} N)"
         )
 
 
@@ -602,6 +636,16 @@ def _points_of_layers(made: Layered) -> list[tuple[float, list[Landmark]]]:
         if points:
             found.append((y, points))
     return found
+
+
+def _at(row: float, values: Array) -> float:
+    """Return a value in a row, or between two."""
+    return float(np.interp(row, np.arange(values.size), values))
+
+
+def _event_name(spring: FrameSpring, point: Landmark) -> str:
+    fails = spring.group == "shear" and spring.rule in _FALLING and point.name == "yield"
+    return FAILS if fails else point.name
 
 
 def span_note(result: FrameResult) -> str:

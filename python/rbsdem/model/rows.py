@@ -111,11 +111,10 @@ class LimitState:
         "bar_buckling", "hoop_fracture", "bar_fracture", "cap", "shear_cracking", "shear_yield",
         "shear_failure", "strength_loss", "collapse" or "axial_failure"; of a frame
         "infill_cracking", "infill_peak" and "infill_residual" too. Of the `events` of a frame
-        "cracking", "yield", "spalling", "cap" or, of an infill, "residual" of a spring; of a
-        member "shear failure", from where on its drift decides whether it carries its axial load,
-        "lost" where it does not,
-        "snap" where its inside jumps to another equilibrium (the jump that loses most energy), or
-        "fall" where it has none any more.
+        "cracking", "yield", "spalling", "cap", "shear_failure" or, of an infill, "residual" of a
+        spring; of a member "shear_failure", where its drift reaches that of it before a spring
+        does, "lost" where it carries its axial load no more, "snap" where its inside jumps to
+        another equilibrium (the jump that loses most energy), or "fall" where it has none any more.
     row : int
         First row of the result at or behind it.
     time : float
@@ -359,6 +358,8 @@ class Rows(_Channels):
         """
         known = vars(self)
         if self.dynamic or "_is_path" in known:
+            return self
+        if self.call.get("corners") and not self._is_column:
             return self
         if "_path" not in known:
             known["_path"] = self._follow_corners()

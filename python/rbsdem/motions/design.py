@@ -204,9 +204,15 @@ class DesignSpectrum(Tabular):
         return cls.table(_PERIODS, mean, name=f"mean of {len(given)} records")
 
 
+#: Largest accelerations that maps of hazard have, as parts of g.
+_MOST_OF_G = {"ag": 1.5, "s_xs": 5.0, "s_x1": 3.0}
+
+
 def _part_of_g(value: float, name: str) -> float:
-    hint = "; it is a part of g, as 0.3"
-    return _arguments.number(value, f"spectrum: {name}", above=0.0, most=5.0, hint=hint)
+    hint = "; it is a part of g, as 0.3, and 2.45 m/s2 is 0.25"
+    return _arguments.number(
+        value, f"spectrum: {name}", above=0.0, most=_MOST_OF_G[name], hint=hint
+    )
 
 
 def _ratio(damping: float) -> float:

@@ -14,7 +14,7 @@ from rbsdem.checks.acceptance import Assessment
 from rbsdem.errors import InputError
 from rbsdem.many.target import Target
 from rbsdem.model.frame import Frame, MemberGeometry
-from rbsdem.model.frame_result import FrameResult
+from rbsdem.model.frame_result import FAILS, FrameResult
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -36,6 +36,7 @@ _STATES = {
     "yield": ("yielded", "black"),
     "spalling": ("cover spalled", "#e67e22"),
     "cap": ("beyond its cap", "#c0392b"),
+    FAILS: ("failed in shear", "#8e44ad"),
 }
 _HINGE: dict[str, Any] = {
     "linestyle": "none",
@@ -64,7 +65,7 @@ _MARKS: dict[str, dict[str, Any]] = {
     "spalling": {"marker": "^", "markerfacecolor": "#e67e22"},
     "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
     "residual": {"marker": "v", "markerfacecolor": "#a04a26"},
-    "shear failure": {"marker": "s", "markerfacecolor": "#e67e22"},
+    FAILS: {"marker": "s", "markerfacecolor": "#8e44ad"},
     "lost": {"marker": "X", "markerfacecolor": "#c0392b", "markersize": 6.0},
 }
 _VERBS = {
@@ -73,9 +74,9 @@ _VERBS = {
     "spalling": "spalls",
     "cap": "reaches its cap",
     "residual": "is at what is left of it",
+    FAILS: "fails in shear",
     "lost": "is lost",
 }
-_VERBS |= {"shear failure": "fails in shear"}
 
 #: States of infills, their names in a legend and their fills, and how panels are drawn.
 _PANELS = {
@@ -460,6 +461,8 @@ def spring_rotations(result: FrameResult, row: int | NDArray[np.intp]) -> Spring
     found = SpringRotations(
         {name: np.zeros((*np.shape(row), 2)) for name in structure.parts.members}, {}
     )
+    if "rotation" not in result.springs:
+        return found
     turned, moments = result.springs["rotation"][row], result.springs["moment"][row]
     for i, spring in enumerate(structure.parts.springs_of("flexure")):
         if spring.group == "panel":
@@ -552,6 +555,7 @@ def _draw_hinges(
         else:
             at = deformed(result, member, row, scale, turns, share)[0]
         points[state].append(at)
+    _mark_members(ax, result, row, scale, turns)
     for state, (label, fill) in _STATES.items():
         if points[state]:
             name = label if result is not None else "hinge"
@@ -591,6 +595,29 @@ def _draw_infills(
         label, fill = _PANELS[state]
         ax.fill(*corners.T, facecolor=fill, label="_" if state in drawn else label, **_PANEL)
         drawn.add(state)
+
+
+def _mark_members(
+    ax: Axes, result: FrameResult | None, row: int, scale: float, turns: SpringRotations | None
+) -> None:
+    """Mark the middle of members that have failed in shear, or are lost, up to a row."""
+    if result is None or turns is None:
+        return
+    failed = {
+        event.member: event.name
+        for name in (FAILS, "lost")
+        for event in result.events
+        if event.name == name and event.time <= result.time[row] and event.group != "panel"
+    }
+    for name, label in ((FAILS, "member failed in shear"), ("lost", "member lost")):
+        members = [member for member, state in failed.items() if state == name]
+        if members:
+            places = [
+                deformed(result, result.frame.geometry[one], row, scale, turns, np.array([0.5]))[0]
+                for one in members
+            ]
+            mark = _HINGE | {"markersize": 6.5} | _MARKS[name]
+            ax.plot(*np.array(places).T, **mark, label=label)
 
 
 def _undeformed(ax: Axes, structure: Frame, strong: bool) -> Array:

@@ -281,7 +281,7 @@ def interaction(
     design: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw axial load over moment, in kN and kN m.
+    """Draw axial load over moment, in kN and kN m; of unlike faces both sides, with their sign.
 
     Parameters
     ----------
@@ -307,18 +307,35 @@ def interaction(
         )
     with axes_or_new(ax, (3.5, 3.4)) as drawn:
         name = _NAMES[diagram.code]
-        drawn.plot(diagram.moment / 1e3, diagram.axial_load / 1e3, **MODEL_LINE, label=name)
+        nominal = {"axial": "axial_load", "moment": "moment"}
+        drawn.plot(*_outline(diagram, **nominal), **MODEL_LINE, label=name)
         if design and diagram.code in get_args(Code):
             look = TEST_LINE | {"color": "black", "label": name.replace("nominal", "design")}
-            drawn.plot(diagram.design_moment / 1e3, diagram.design_axial_load / 1e3, **look)
+            factored = {key: f"design_{value}" for key, value in nominal.items()}
+            drawn.plot(*_outline(diagram, **factored), **look)
+        one_side = diagram.upside_down is None
         if marks is not None:
-            drawn.plot(np.abs(marks[:, 1]) / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")
+            moments = np.abs(marks[:, 1]) if one_side else marks[:, 1]
+            drawn.plot(moments / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")
         drawn.axhline(0.0, **ZERO_LINE)
-        drawn.set_xlim(left=0.0, auto=True)
+        if one_side:
+            drawn.set_xlim(left=0.0, auto=True)
+        else:
+            drawn.axvline(0.0, **ZERO_LINE)
         drawn.set(xlabel="Moment (kN m)", ylabel="Axial load (kN), compression positive")
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="upper right", fontsize=7.5)
     return drawn
+
+
+def _outline(diagram: InteractionDiagram, axial: str, moment: str) -> tuple[Array, Array]:
+    """Return moments and axial loads [kN m, kN], those of unlike faces around both sides."""
+    m, n = getattr(diagram, moment), getattr(diagram, axial)
+    other = diagram.upside_down
+    if other is not None:
+        m = np.concatenate((m, -getattr(other, moment)[::-1], m[:1]))
+        n = np.concatenate((n, getattr(other, axial)[::-1], n[:1]))
+    return m / 1e3, n / 1e3
 
 
 def section_state(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: Units of SI: factor to the unit on paper, and that unit.
 _THOUSANDS = {"N": "kN", "J": "kJ", "N m": "kN m", "Nm": "kN m"}
 PAPER = {unit: (1e-3, on_paper) for unit, on_paper in _THOUSANDS.items()}
-PAPER |= {"m": (1e3, "mm"), "1/m": (1e3, "mrad/m"), "rad": (1e2, "%"), "drift": (1e2, "%")}
+PAPER |= {"m": (1e3, "mm"), "1/m": (1e3, "mrad/m"), "drift": (1e2, "%")}
 PAPER |= {"N/m": (1e-6, "kN/mm"), "Pa": (1e-6, "MPa"), "Nm2": (1e-6, "MN m2")}
 
 #: Letters of a line where standard output is no terminal.

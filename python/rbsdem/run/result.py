@@ -504,6 +504,10 @@ def _return(
     return result
 
 
+#: Drift of a push-over that is more than a structure of small rotations has.
+_MOST_DRIFT = 0.5
+
+
 def pushover(
     structure: Structure,
     *,
@@ -550,6 +554,11 @@ def pushover(
     if far == 0:
         raise InputError(f"pushover: {said[0]} = 0 must be a finite number that is not 0")
     if said[0] == "drift":
+        if abs(far) > _MOST_DRIFT:
+            raise InputError(
+                f"pushover: drift = {far:g} is a displacement of {far:g} times the height; drifts "
+                "are parts of it, and 2 per cent is 0.02"
+            )
         far *= structure.height
     points = _arguments.integer(points, "pushover: points", least=1)
     name = "force" if said[0] == "force" else "displacement"

@@ -17,7 +17,8 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal, get_args
 
 import numpy as np
@@ -62,6 +63,8 @@ class InteractionDiagram(Tabular):
         in tension; NaN for material laws and joints.
     tension_strain : ndarray, shape (k,)
         Strain of the outermost bar in tension, elongation positive; NaN likewise.
+    upside_down : InteractionDiagram or None
+        That of the section upside down, for moments with y < 0 in tension; None: the same.
     """
 
     _columns = ("axial_load N", "moment Nm", "neutral_axis m", "tension_strain")
@@ -73,6 +76,7 @@ class InteractionDiagram(Tabular):
     design_moment: Array
     neutral_axis: Array
     tension_strain: Array
+    upside_down: InteractionDiagram | None = None
 
     def moment_at(self, axial_load: ArrayLike, *, design: bool = False) -> Array:
         """Return the moment that the section carries with an axial load [N m].
@@ -99,27 +103,39 @@ class InteractionDiagram(Tabular):
         found = np.where(before * after >= 0, found, -np.inf).max(axis=-1)
         return np.where(np.isfinite(found), found, np.nan)[()]
 
+    def moment_range(self, axial_load: ArrayLike, *, design: bool = False) -> tuple[Array, Array]:
+        """Return least and largest moment with an axial load, y > 0 in tension positive [N m]."""
+        other = self.upside_down or self
+        least = -other.moment_at(axial_load, design=design)
+        return least, self.moment_at(axial_load, design=design)
+
     def utilisation(
         self, axial_load: ArrayLike, moment: ArrayLike, *, design: bool = True
     ) -> Array:
-        """Return a moment over the strength that goes with its axial load.
+        """Return a moment over the strength of its side that goes with its axial load.
 
         Parameters
         ----------
         axial_load, moment : array_like
-            Demands [N, N m]; the sign of the moment does not count.
+            Demands [N, N m]; moments with y > 0 in tension are positive.
         design : bool, optional
             Against the design strength, as by default, or the nominal one.
 
         Returns
         -------
         ndarray, shape of the demands
-            Above 1 where the section fails; infinite for axial loads that it does not carry.
+            Above 1 where the section fails; infinite for axial loads that it does not carry. Where
+            it carries an axial load only with a moment, as near its strength in tension with bars
+            on one side, the distance from the middle of these moments over half of their range.
         """
-        strength = self.moment_at(axial_load, design=design)
-        carried = np.isfinite(strength) & (strength > 0)
-        demand = np.abs(np.asarray(moment, dtype=np.float64))
-        return np.where(carried, demand / np.where(carried, strength, 1.0), np.inf)[()]
+        least, most = self.moment_range(axial_load, design=design)
+        demand = np.asarray(moment, dtype=np.float64)
+        around = (least < 0) & (most > 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            side = demand / np.where(demand < 0, least, most)
+            middle = np.abs(demand - 0.5 * (least + most)) / (0.5 * (most - least))
+        found = np.where(around, side, np.where(most > least, middle, np.inf))
+        return np.where(np.isfinite(least + most), found, np.inf)[()]
 
     def _curve(self, design: bool) -> tuple[Array, Array]:
         if design:
@@ -159,9 +175,17 @@ def joint_interaction(
     turned = _arguments.number(rotation, "interaction: rotation", above=0, most=1, unit="rad")
     loads = np.linspace(*joint_loads(joint, closing), count)
     path = np.concatenate(([0.0], np.geomspace(1e-4, 1.0, 100) * turned))
-    moments = np.array([np.nanmax(joint.response(path, load)) for load in loads.tolist()])
+    moments, opposite = (
+        np.array([np.nanmax(each.response(path, load)) for load in loads.tolist()])
+        for each in (joint, joint.mirrored())
+    )
     unknown = np.full(count, np.nan)
-    return InteractionDiagram("joint", loads, moments, loads, moments, unknown, unknown)
+    made, other = (
+        InteractionDiagram("joint", loads, each, loads, each, unknown, unknown)
+        for each in (moments, opposite)
+    )
+    alike = np.allclose(moments, opposite, rtol=1e-9, atol=1e-9 * np.abs(moments).max())
+    return made if alike else replace(made, upside_down=other)
 
 
 def joint_loads(joint: Layered, closing: float) -> tuple[float, float]:
@@ -225,16 +249,24 @@ def interaction(
     checked_section(section)
     count, confined = _points(points), is_confined(section, confined)
     if code is None:
-        return _own(section, count, confined)
+        return _both_sides(partial(_own, confined=confined), section, count)
     code = _arguments.choice(code, "interaction: code", get_args(Code))
     if confined:
         raise InputError("interaction: the blocks of codes are those of unconfined concrete")
     if not section.bars:
         raise InputError("interaction: the section has no bars; give it some")
-    return _aci_318(section, count) if code == "aci318" else _ec_2(section, count)
+    return _both_sides(_aci_318 if code == "aci318" else _ec_2, section, count)
 
 
-def _own(section: Section, count: int, confined: bool) -> InteractionDiagram:
+def _both_sides(
+    make: Callable[[Section, int], InteractionDiagram], section: Section, count: int
+) -> InteractionDiagram:
+    """Return a diagram that knows that of the section upside down, if this differs."""
+    made = make(section, count)
+    return made if section.symmetric else replace(made, upside_down=make(section.mirrored, count))
+
+
+def _own(section: Section, count: int, *, confined: bool) -> InteractionDiagram:
     """Return the largest moment of the moment-curvature diagram at each axial load.
 
     At the ends the section has one strain all over.

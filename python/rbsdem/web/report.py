@@ -30,7 +30,7 @@ from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
 from rbsdem.many.target import Target
 from rbsdem.measured.specimens import Specimens
-from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.frame import SCOPE_NOTE, Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.output import frames, many, section
@@ -68,6 +68,7 @@ _STOREYS = (
     "Drift, shear, and the part theta = P d/(V h) of it that the dead load P makes (EN 1998-1, "
     "4.4.2.2)."
 )
+_FITTED = "theta is the median of the fitted curve, beta its dispersion; sample medians differ."
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000
 
@@ -376,7 +377,7 @@ def inputs(statement: _core.Statement) -> DataFrame:
             # The sizes of a shape are lengths.
             unit = key.get("unit", "" if key or group != "section" else "m")
             unit = _OF_RULES[group == "flexure"].get(unit, unit)
-            factor, unit = (1.0, unit) if unit in ("N/m", "rad") else PAPER.get(unit, (1.0, unit))
+            factor, unit = (1.0, unit) if unit == "N/m" else PAPER.get(unit, (1.0, unit))
             values = ", ".join(
                 each if isinstance(each, str) else f"{factor * each:.6g}"
                 for each in (value if isinstance(value, list) else [value])
@@ -480,7 +481,7 @@ def _of_assessment(
     text = " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
     yield Sheet("Members", text, tuple(drawn), found.worst(10))
     yield Sheet("All members", table=found.to_pandas(), beside=True)
-    yield Sheet("Assumed", f"{result.scope_note} {_LEFT_OUT}")
+    yield Sheet("Assumed", f"{found.assumed} {result.scope_note} {_LEFT_OUT}")
 
 
 def _storeys(found: Assessment) -> DataFrame:
@@ -545,7 +546,21 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
 
 @sheets_of.register
 def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[Sheet]:
-    yield _of_structure(next(iter(found.runs.columns.values())))
+    structure = next(iter(found.runs.columns.values()))
+    yield _of_structure(structure)
+    states = ", ".join(limits or {"collapse": None})
+    about = {"intensity": found.runs.measure.label, "limit states": states} | found.settings
+    about = {name: str(value) for name, value in about.items()}
+    given = {"setting": list(about), "value": list(about.values())}
+    yield Sheet("Analysis", _damped(structure), table=data_frame(given))
+    motions = found.runs.motions
+    records = {
+        "record": list(motions),
+        "points": [one.acceleration.size for one in motions.values()],
+        "step_s": [one.dt for one in motions.values()],
+        "peak_m/s2": [one.pga for one in motions.values()],
+    }
+    yield Sheet("Records", table=data_frame(records))
     yield Sheet("Curves", str(found), (partial(many.ida, found),))
     try:
         curves = found.fragilities(limits or {"collapse": ("collapse", None)})
@@ -557,8 +572,15 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
         for name, curve in curves.items()
     ]
     if curves:
-        yield Sheet("Fragility", "", (partial(many.fragilities, curves),), data_frame(rows))
+        yield Sheet("Fragility", _FITTED, (partial(many.fragilities, curves),), data_frame(rows))
     yield Sheet("Runs", table=found.to_pandas(), beside=True)
+    scope = f"{SCOPE_NOTE} " if isinstance(structure, Frame) else ""
+    yield Sheet("Assumed", f"{scope}{_LEFT_OUT}")
+
+
+def _damped(structure: Structure) -> str:
+    damping = structure.damping
+    return f"Damping: {damping if damping is not None else 'none but that of the springs'}."
 
 
 def _of_structure(structure: Structure) -> Sheet:
@@ -645,7 +667,7 @@ def _summary(summary: Mapping[str, Any]) -> DataFrame:
     rows = []
     for name, value in summary.items():
         unit = _unit(name)
-        factor, unit = (1.0, unit) if unit == "rad" else PAPER.get(unit, (1.0, unit))
+        factor, unit = PAPER.get(unit, (1.0, unit))
         text = f"{factor * value:.4g}" if isinstance(value, int | float) else str(value)
         if text:
             rows.append((name.replace("_", " "), text, unit))

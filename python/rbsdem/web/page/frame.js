@@ -46,7 +46,7 @@ const [KIND, ...REST] = LOADING_FIELDS;
 const LOADING = [{ ...KIND, choices: [["push", "push to one side"], ...KIND.choices] }, { path: "loading.drift", label: "Roof drift of the push", dimension: "drift", step: 0.005, kinds: ["push"] }, ...REST];
 const FIELDS = Object.fromEntries([GRID, MATERIALS, COLUMN, BEAM, LOADS, DEMAND, LOADING].flat().map(field => [field.path, field]));
 // Hinges by the furthest that they have reached, and ends by the levels of the code that they have passed.
-const STATES = [["cracking", "cracked", "cracked"], ["yield", "yielded", "yielded"], ["cap", "beyond", "failed or beyond their cap"], ["shear failure", "beyond"], ["lost", "beyond"]];
+const STATES = [["cracking", "cracked", "cracked"], ["yield", "yielded", "yielded"], ["cap", "beyond", "failed or beyond their cap"], ["shear_failure", "beyond"], ["lost", "beyond"]];
 const PASSED = ["within", "yielded", "far", "beyond"];
 
 // The storey whose members are shown, or 0 for all; the member that was chosen; whether levels are shown.

@@ -1,0 +1,125 @@
+"""Measures of frames depend on the path alone; failures in shear have one name."""
+
+from dataclasses import replace
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from test_acceptance import BEAM, COLUMN
+
+import rbsdem
+from rbsdem import plot
+from rbsdem.codes import assess
+from rbsdem.errors import AccuracyWarning
+
+MORE = {"floor_mass": 40e3, "beam_load": 15e3, "kinematics": "pdelta"}
+
+
+@pytest.fixture(scope="module")
+def frame():
+    return rbsdem.Frame.grid([3.2, 3.0], [5.0], columns=COLUMN, beams=BEAM, **MORE)
+
+
+@pytest.mark.parametrize("points", [1, 8, 60])
+def test_measures_depend_neither_on_points_nor_on_rows(frame, points):
+    far = 0.02 * frame.height
+    push = rbsdem.pushover(frame, drift=0.02, points=7)
+    path = rbsdem.cyclic(frame, displacement=far * np.arange(1, points + 1) / points)
+    sparse = rbsdem.cyclic(frame, displacement=far * np.arange(1, 61) / 60, every=30)
+    for other in (path, sparse):
+        assert len(other.events) == len(push.events)
+        for one, two in zip(push.events, other.events, strict=True):
+            assert (one.name, one.member, one.end, one.side) == (
+                two.name, two.member, two.end, two.side,
+            )  # fmt: skip
+            assert two.displacement == pytest.approx(one.displacement, rel=1e-6, abs=1e-9)
+            assert two.force == pytest.approx(one.force, rel=1e-6)
+        for name in ("C-1-1", "B-1-1"):
+            one, two = push.member(name), other.member(name)
+            np.testing.assert_allclose(two.ductility, one.ductility, rtol=1e-6)
+            end = two.plastic_rotation[-1], one.plastic_rotation[-1]
+            np.testing.assert_allclose(*end, rtol=1e-6, atol=1e-12)
+        assert np.nanmax(other.member("C-1-1").ductility) > 1.3
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_failures_in_shear_of_beams_have_their_name():
+    # Hardly any hoops: the beam fails in shear before its ends yield.
+    steel = BEAM.bars[0][2]
+    many = [(0.2, 24e-4, steel), (-0.2, 24e-4, steel)]
+    weak = replace(BEAM, bars=many, ties=rbsdem.Ties(0.006, 0.25, steel))
+    strong = rbsdem.RectangularSection(
+        0.6, 0.6, BEAM.concrete, layout=rbsdem.Layout(16, 0.028, steel), cover=0.03,
+        ties=rbsdem.Ties(0.01, 0.1, steel, legs=4),
+    )  # fmt: skip
+    frame = rbsdem.Frame.grid(
+        [3.2], [3.0], columns=strong, beams=weak, **MORE | {"beam_load": 60e3}
+    )
+    push = rbsdem.pushover(frame, drift=0.03, points=20)
+    failed = [event for event in push.events if event.name == "shear_failure"]
+    assert "B-1-1" in {event.member for event in failed}
+    assert not [e for e in push.events if e.group == "shear" and e.name == "yield"]
+    assert push.limit_states()["shear_failure"].member == failed[0].member
+    assert not assess(push, "asce_41").warnings  # which says that no spring fails in shear
+    for ax, label in (
+        (plot.frame(push), "member failed in shear"),
+        (plot.pushover(push), "fails in shear"),
+    ):
+        assert any(label in text for text in ax.get_legend_handles_labels()[1])
+        plt.close(ax.figure)
+
+
+def test_ends_are_counted_once(frame):
+    quake = rbsdem.time_history(
+        frame, rbsdem.motions.synthetic(1)[0].scaled(2.0), method="newmark", dt=0.01
+    )
+    found = assess(quake, "en_1998_3")
+    # Two columns and a beam in each of two storeys; rows are of both sides of an end.
+    assert "12 ends and 4 joints" in repr(found)
+    table = found.to_pandas()
+    beyond = table[table["ratio_DL"] > 1]
+    assert found.counts()["DL"] == len(set(zip(beyond["member"], beyond["end"], strict=True)))
+    assert len(beyond) > found.counts()["DL"]
+
+
+def test_an_elastic_frame_is_drawn_and_reported(tmp_path):
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3)
+    frame = rbsdem.Frame.grid([3.2], [6.0], columns=member, beams=member, beam_load=2e4)
+    push = rbsdem.pushover(frame, drift=0.01, points=4)
+    plt.close(plot.frame(push).figure)
+    assert "Members" in rbsdem.report(push, tmp_path / "elastic.html").read_text("utf-8")
+
+
+def test_rotations_of_tables_are_in_rad(frame):
+    push = rbsdem.pushover(frame, drift=0.02, points=10)
+    worst = assess(push, "asce_41").worst(3)
+    text = str(plot.table(worst))
+    assert "rad" in text
+    assert f"{worst['demand_rad'][0]:.3g}" in text
+
+
+def test_factors_of_members_without_detailing(frame):
+    push = rbsdem.pushover(frame, drift=0.02, points=10)
+    detailed, other = (assess(push, "en_1998_3", detailing=f) for f in (1.0, 0.8))
+    one, two = detailed.to_pandas(), other.to_pandas()
+    np.testing.assert_allclose(two["limit_NC_rad"], 0.8 * one["limit_NC_rad"])
+    np.testing.assert_allclose(two["limit_DL_rad"], one["limit_DL_rad"])
+    assert "A.1 x 0.8" in set(two["source"].str.split(",").str[0])
+    assert "ribbed" in detailed.assumed
+    with pytest.raises(rbsdem.InputError, match="detailing is for 'en_1998_3'"):
+        assess(push, detailing=0.8)
+
+
+def test_units_that_slip():
+    record = rbsdem.motions.synthetic(1)[0]
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3)
+    frame = rbsdem.Frame.grid([3.2], [6.0], columns=member, beams=member, **MORE)
+    for call, text in [
+        (lambda: record.sa(1.0, damping=5), "damping = 5"),
+        (lambda: rbsdem.ida(frame, [record], damping=5), "5 % is 0.05"),
+        (lambda: rbsdem.pushover(frame, drift=2), "2 per cent is 0.02"),
+    ]:
+        with pytest.raises(rbsdem.InputError, match=text):
+            call()
+    with pytest.warns(AccuracyWarning, match="5 g"):
+        rbsdem.time_history(frame, record.scaled(60.0), method="newmark", dt=0.01)
