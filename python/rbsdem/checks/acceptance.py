@@ -278,7 +278,7 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
     )
 
 
-def _en_1998_3(d: _Demand, primary: bool, detailing: float) -> _Limits:
+def _en_1998_3(d: _Demand, primary: bool, detailing: float = 1.0) -> _Limits:
     if "joint" in d.kind:
         return _ec_8_joint(d)
     if d.section.shape != "rectangle":

@@ -455,15 +455,16 @@ class FrameResult(Rows):
     @staticmethod
     def _reached(point: Landmark, values: Array) -> float | None:
         """Return where a deformation first reaches a landmark: a row, or between two the share."""
-        beyond = point.side * values - _REACHED * point.deformation
-        rows = np.flatnonzero(beyond >= 0)
+        beyond = point.side * values / point.deformation
+        rows = np.flatnonzero(beyond >= _REACHED)
         if not rows.size:
             return None
         row = int(rows[0])
-        if not row:
-            return 0.0
+        # A path stands on it in its corner.
+        if not row or beyond[row] <= 2.0 - _REACHED:
+            return float(row)
         before, there = beyond[row - 1 : row + 1].tolist()
-        return float(row - there / (there - before))
+        return float(row - (there - 1.0) / (there - before))
 
     @cached_property
     def _of_layers(self) -> dict[int, list[tuple[float, list[Landmark]]]]:

@@ -205,7 +205,7 @@ class DesignSpectrum(Tabular):
 
 
 #: Largest accelerations that maps of hazard have, as parts of g.
-_MOST_OF_G = {"ag": 1.5, "s_xs": 5.0, "s_x1": 3.0}
+_MOST_OF_G = {"ag": 2.0, "s_xs": 5.0, "s_x1": 3.0}
 
 
 def _part_of_g(value: float, name: str) -> float:

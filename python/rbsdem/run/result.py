@@ -505,7 +505,7 @@ def _return(
 
 
 #: Drift of a push-over that is more than a structure of small rotations has.
-_MOST_DRIFT = 0.5
+_MOST_DRIFT = 1.0
 
 
 def pushover(
