@@ -101,7 +101,10 @@ contains
          call drift_note(structure, summary%peak_displacement, notes)
          if (notes%count > before) return
       end if
-      if (structure%is_implicit) return
+      if (structure%is_implicit) then
+         call frame_rotation_note(structure, summary, notes)
+         return
+      end if
       if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (structure%kinematics == small) kinematics = 'small'
@@ -116,6 +119,20 @@ contains
                         "use 'finite'")
       end if
    end subroutine rotation_note
+
+   !> Rotations of frames are small ones, of their nodes and of the whole.
+   subroutine frame_rotation_note(structure, summary, notes)
+      class(structure_type), intent(in) :: structure
+      type(summary_type), intent(in) :: summary
+      type(message_list), intent(inout) :: notes
+
+      if (max(summary%peak_rotation, abs(summary%peak_displacement)/structure%total_height) > &
+          largest_small) then
+         call notes%add('frame: it turns by more than 0.1 rad, and the rotations of frames are taken as '// &
+                        'small: displacements and forces err by about 2 th^2/3 of them (0.7 % at 0.1 '// &
+                        'rad, 2.7 % at 0.2 rad), and beyond 1 rad they have no meaning')
+      end if
+   end subroutine frame_rotation_note
 
    !> A displacement beyond half of the height, which a number in another unit is.
    subroutine drift_note(structure, displacement, notes)

@@ -1,6 +1,7 @@
 """Measures of frames depend on the path alone; failures in shear have one name."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,6 +12,7 @@ import rbsdem
 from rbsdem import plot
 from rbsdem.codes import assess
 from rbsdem.errors import AccuracyWarning
+from rbsdem.frames import FrameNode, Member
 
 MORE = {"floor_mass": 40e3, "beam_load": 15e3, "kinematics": "pdelta"}
 
@@ -121,5 +123,80 @@ def test_units_that_slip():
     ]:
         with pytest.raises(rbsdem.InputError, match=text):
             call()
-    with pytest.warns(AccuracyWarning, match="5 g"):
+    with pytest.warns(AccuracyWarning) as told:
         rbsdem.time_history(frame, record.scaled(60.0), method="newmark", dt=0.01)
+    assert any("5 g" in str(each.message) for each in told)
+
+
+def portal(left, x, **first):
+    """Return nodes and members of a portal with its left column at x."""
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3)
+    names = [f"{left}{i}" for i in range(4)]
+    places = [(x, 0.0), (x, 3.0), (x + 4.0, 3.0), (x + 4.0, 0.0)]
+    nodes = [
+        FrameNode(name, *at, "fixed" if at[1] == 0 else "free", **more)
+        for name, at, more in zip(names, places, ({}, first, {}, {}), strict=True)
+    ]
+    pairs = pairwise(names)
+    return nodes, [Member(f"{left}-{i}", *pair, member) for i, pair in enumerate(pairs)]
+
+
+def test_parts_that_nothing_ties_are_refused():
+    one, two = portal("a", 0.0), portal("b", 10.0)
+    with pytest.raises(rbsdem.InputError, match="nodes a0 and b0 are of parts that nothing ties"):
+        rbsdem.Frame(nodes=one[0] + two[0], members=one[1] + two[1])
+    # A strut without bending stiffness, or a common motion along x, ties them.
+    tied = portal("b", 10.0, moves_with="a2")
+    frame = rbsdem.Frame(nodes=one[0] + tied[0], members=one[1] + tied[1])
+    push = rbsdem.pushover(frame, displacement=0.01, points=2)
+    np.testing.assert_allclose(push.node("b1")[:, 0], push.node("a2")[:, 0], rtol=1e-12)
+    # Both parts carry half, as they are alike.
+    shear = {name: force[-1, 0] for name, force in push.reactions.items()}
+    assert shear["a0"] + shear["a3"] == pytest.approx(shear["b0"] + shear["b3"], rel=1e-3)
+    # Two nodes at one place may move alike: a hinge between the parts.
+    close = portal("b", 4.0, moves_with="a2")
+    close[0][0] = replace(close[0][0], x=4.5)
+    rbsdem.Frame(nodes=one[0] + close[0], members=one[1] + close[1])
+    with pytest.raises(rbsdem.InputError, match="tie them by moves_with"):
+        rbsdem.Frame(
+            nodes=one[0] + [replace(node, moves_with="") for node in close[0]],
+            members=one[1] + close[1],
+        )
+
+
+def test_a_frame_that_turns_far_is_told(frame):
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3)
+    elastic = rbsdem.Frame.grid([3.2], [6.0], columns=member, beams=member, beam_load=2e4)
+    with pytest.warns(AccuracyWarning, match=r"turns by more than 0\.1 rad"):
+        rbsdem.pushover(elastic, drift=0.12, points=2)
+    rbsdem.pushover(elastic, drift=0.09, points=2)
+
+
+def test_the_peak_of_a_push_downward():
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=1e5, hardening=0.02)
+    nodes = [FrameNode("a", 0, 0, "fixed"), FrameNode("b", 3, 0, push_y=-1.0)]
+    nodes.append(FrameNode("c", 6, 0, "fixed"))
+    beam = rbsdem.Frame(
+        nodes=nodes, members=[Member("ab", "a", "b", member), Member("bc", "b", "c", member)],
+        pattern="nodes", control="y", control_node="b",
+    )  # fmt: skip
+    for side in (-1.0, 1.0):
+        push = rbsdem.pushover(beam, displacement=side * 0.02, points=5)
+        assert abs(push.force[-1]) > 1e5
+        assert push.summary["peak_force"] == pytest.approx(push.force[-1], rel=1e-12)
+
+
+def test_reactions_after_a_loss_are_the_base_shear():
+    column = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.02)
+    frame = rbsdem.Frame.grid(
+        [3.2, 3.2], [5.0, 5.0], columns=column, beams=column, floor_mass=40e3, beam_load=20e3,
+        kinematics="pdelta", losses={"C-2-1": 1.0},
+    )  # fmt: skip
+    run = rbsdem.time_history(
+        frame, rbsdem.motions.synthetic(1)[0].scaled(0.4), method="newmark", dt=0.01
+    )
+    after = run.lost[:, run.frame.parts.members.index("C-2-1")] > 0
+    assert after.any()
+    assert not after.all()
+    total = sum(force[:, 0] for force in run.reactions.values())
+    np.testing.assert_allclose(total, -run.base_shear, atol=1e-6 * np.abs(run.base_shear).max())

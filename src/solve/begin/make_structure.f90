@@ -141,7 +141,8 @@ contains
          i = maxloc(stiffness, dim=1)
          call fatal_error(error, bad_input, 'member '//trim(frame%member_name(i))//': it is so much '// &
                           'stiffer than what holds it that the frame loses 10 of its 16 digits or more; '// &
-                          "a rigid member has interior = 'rigid' and no springs")
+                          "a rigid member has interior = 'rigid' and no springs; lengths are in m "// &
+                          '(3200 mm is 3.2), areas in m2, inertias in m4, moduli in Pa')
          return
       end if
       associate (free => maxloc(abs(matrix%triangle(1, :)), dim=1))

@@ -110,6 +110,8 @@ module rbs_solve_static_path
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
       !> Driven quantity where the way to the present target begins, and the number of the target, from 0
       real(wp) :: control_begin = 0.0_wp
+      !> Force and displacement there, and the sign of the displacement that a positive force makes
+      real(wp), private :: first_point(2) = 0.0_wp, sense = 0.0_wp
       integer, private :: number = 0
       !> Tolerances of a state of the structure, and whether the present point violates them
       type(row_check), private :: check
@@ -278,6 +280,7 @@ contains
       do i = 1, size(target)
          self%number = i - 1
          self%control_begin = self%control
+         if (i == 1) self%first_point = [self%force, self%displacement]
          ! A path whose first target is not where it begins has a way to it.
          if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%record_corner(0.0_wp)
          call self%advance(target(i), failure)
@@ -482,9 +485,14 @@ contains
    subroutine update_peak(self)
       class(static_path), intent(inout) :: self
 
+      ! Pushed downward, a positive load goes with a negative displacement.
+      if (.not. abs(self%sense) > 0.0_wp) then
+         self%sense = (self%force - self%first_point(1))*(self%displacement - self%first_point(2))
+         if (abs(self%sense) > 0.0_wp) self%sense = sign(1.0_wp, self%sense)
+      end if
       ! A force that pulls the structure back, as where second-order moments drive it on, is no strength.
       call self%task%summary%update_peak(self%displacement, merge(self%force, 0.0_wp, &
-                                                          self%force*self%displacement >= 0.0_wp))
+                                                     self%sense*self%force*self%displacement >= 0.0_wp))
    end subroutine update_peak
 
    !> Keep the row of the present point.

@@ -666,8 +666,11 @@ contains
             ! Nodes of the grid are apart.
             do j = 1, merge(i - 1, 0, i > self%grid_nodes)
                if (hypot(node%x - self%node(j)%x, node%y - self%node(j)%y) > near) cycle
+               ! A hinge between two parts
+               if (leader_of(self, i) == leader_of(self, j)) cycle
                call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
-                                 ' are at one place; move one of them, or use one in place of both')
+                                 ' are at one place; move one of them, use one in place of both, or '// &
+                                 'tie them by moves_with')
             end do
             if (.not. has_member(i) .and. (node%storey /= 0 .or. i > self%grid_nodes)) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
@@ -702,7 +705,49 @@ contains
                            i=1, size(self%node))])) then
          call messages%add('frame: nothing holds it; give nodes a support, or springs to the ground')
       end if
+      call check_tied(self, has_member, messages)
    end subroutine check_geometry
+
+   !> Refuse parts that neither a member nor a common motion ties: one would carry all of the lateral load,
+   !> the other none.
+   subroutine check_tied(self, has_member, messages)
+      type(frame_parts), intent(in) :: self
+      logical, intent(in) :: has_member(:)
+      type(message_list), intent(inout) :: messages
+      integer :: part(size(self%node)), i, first, other
+      logical :: moved
+
+      part = [(leader_of(self, i), i=1, size(part))]
+      moved = .true.
+      do while (moved)
+         moved = .false.
+         do i = 1, size(self%member)
+            associate (ends => self%member(i)%node)
+               if (part(ends(1)) == part(ends(2))) cycle
+               first = minval(part(ends))
+               other = maxval(part(ends))
+               where (part == other) part = first
+               moved = .true.
+            end associate
+         end do
+      end do
+      first = findloc(has_member, .true., dim=1)
+      if (first == 0) return
+      other = findloc(has_member .and. part /= part(first), .true., dim=1)
+      if (other == 0) return
+      call messages%add('frame: nodes '//trim(self%node(first)%name)//' and '//trim(self%node(other)%name)// &
+                        ' are of parts that nothing ties, so that one would carry all of the load; join '// &
+                        'them by a member, or let a node of one move with one of the other (moves_with)')
+   end subroutine check_tied
+
+   !> The node whose displacement along x a node shares: itself, if none was given.
+   pure integer function leader_of(self, node) result(leader)
+      type(frame_parts), intent(in) :: self
+      integer, intent(in) :: node
+
+      leader = self%node(node)%like
+      if (leader == 0) leader = node
+   end function leader_of
 
    !> Feet of columns that are left out do not move.
    subroutine hold_idle(self)
