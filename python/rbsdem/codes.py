@@ -6,7 +6,7 @@ a frame.
 
 from rbsdem.checks.acceptance import Assessment as Assessment
 from rbsdem.checks.acceptance import assess as assess
-from rbsdem.checks.acceptance import beam_rotations as beam_rotations
+from rbsdem.checks.asce_41 import beam_rotations as beam_rotations
 from rbsdem.checks.code_values import CodeValues as CodeValues
 from rbsdem.checks.code_values import code_values as code_values
 from rbsdem.checks.code_values import compare as compare

@@ -19,7 +19,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
-from rbsdem.checks import formulas
+from rbsdem.checks import aci_318, asce_41, en_1998, formulas
 from rbsdem.errors import InputError
 from rbsdem.model.frame import FrameMember, MemberGeometry
 from rbsdem.model.frame_result import FAILS, FrameResult
@@ -34,20 +34,6 @@ LEVELS: dict[str, tuple[str, ...]] = {
     "en_1998_3": ("DL", "SD", "NC"),
 }
 
-#: Table 10-7, row i: a, b, IO by detailing ("C" or not), (rho - rho')/rho_bal (up to 0, from 0.5)
-#: and shear (up to 0.25, from 0.5 sqrt(f'c) MPa). LS = a and CP = b.
-_FLEXURE = {
-    True: (
-        ((0.025, 0.05, 0.010), (0.02, 0.04, 0.005)),
-        ((0.02, 0.03, 0.005), (0.015, 0.02, 0.005)),
-    ),
-    False: (
-        ((0.02, 0.03, 0.005), (0.01, 0.015, 0.0015)),
-        ((0.01, 0.015, 0.005), (0.005, 0.01, 0.0015)),
-    ),
-}
-#: Row ii, members controlled by shear: IO, LS, CP by stirrups at d/2 or closer.
-_SHEAR = {True: (0.0015, 0.01, 0.02), False: (0.0015, 0.005, 0.01)}
 #: gamma_el of primary members: of (A.1) and of (A.12).
 _PRIMARY = (1.5, 1.15)
 
@@ -62,28 +48,6 @@ class HasTarget(Protocol):
     @property
     def reached(self) -> bool:
         """Whether the push-over goes as far."""
-
-
-def beam_rotations(
-    bars: float, shear: float, *, conforming: bool
-) -> tuple[float, float, float, float]:
-    """Return a, b, IO and c of beams controlled by flexure (ASCE 41-17, table 10-7, row i).
-
-    Parameters
-    ----------
-    bars : float
-        (rho - rho')/rho_bal.
-    shear : float
-        V/(b_w d sqrt(f'c)) [sqrt(MPa)].
-    conforming : bool
-        Whether hoops in the hinge stand at d/3 or closer and carry 3/4 of the shear.
-    """
-    table = np.array(_FLEXURE[conforming])
-    u, w = min(max(bars / 0.5, 0.0), 1.0), min(max((shear - 0.25) / 0.25, 0.0), 1.0)
-    a, b, io = (1 - u) * ((1 - w) * table[0, 0] + w * table[0, 1]) + u * (
-        (1 - w) * table[1, 0] + w * table[1, 1]
-    )
-    return float(a), float(b), float(io), 0.2
 
 
 class _Demand(NamedTuple):
@@ -235,14 +199,14 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
     law, fc = section.concrete_law, section.concrete.fc / 1e6
     gross, ties = section.gross_area, section.ties
     ratio = load / (gross * section.concrete.fc)
-    stiffness = formulas.asce_41_stiffness(ratio) if d.kind == "column" else 0.3
+    stiffness = asce_41.column_stiffness(ratio) if d.kind == "column" else 0.3
     yielding = moment * d.length / (6.0 * stiffness * law["ec"] * section.inertia)
     plastic = max(d.rotation - yielding, 0.0)
     at_yield = (moment + opposite) / d.length
     width, depth = 1e3 * section.web_width, 1e3 * section.effective_depth
     legs = ties.legs * math.pi * (1e3 * ties.diameter) ** 2 / 4.0 if ties else 0.0
     spacing = 1e3 * ties.spacing if ties else math.inf
-    hoops = legs * (ties.steel.fy / 1e6 if ties else 0.0) * depth / spacing
+    hoops = aci_318.stirrups(legs, ties.steel.fy / 1e6 if ties else 0.0, depth, spacing)
     if d.kind == "column":
         if isinstance(section, TeeSection):
             raise InputError("columns with a flange are not in tables 10-8 and 10-9")
@@ -250,7 +214,7 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
         if q.tie_ratio < 0.0005:
             raise InputError(f"rho_t = {q.tie_ratio:.2g} is below 0.0005, where table 10-8 begins")
         strength = formulas.asce_41_shear_strength(q)
-        turned = formulas.asce_41_rotations(
+        turned = asce_41.column_rotations(
             q.axial_load_ratio, q.tie_ratio, at_yield / strength, q.fc, q.fyt, circle=q.round
         )
         mu = d.rotation / yielding
@@ -258,20 +222,18 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
         limits: tuple[float, ...] = (turned.io, turned.ls, turned.cp)
         source = f"table {'10-9' if q.round else '10-8'}"
     else:
-        # ACI 318-19, 22.5.5.1 with the least concrete term of members with stirrups.
-        strength = 0.17 * math.sqrt(fc) * width * depth + hoops
+        strength = aci_318.one_way_shear(fc, width, depth) + hoops
         if at_yield > strength:
-            limits, source = _SHEAR[spacing <= 0.5 * depth], "table 10-7 ii"
+            limits = asce_41.shear_controlled_rotations(spacing / depth)
+            source = "table 10-7 ii"
         else:
             steel = section.bars[0][2]
             pulled, pressed = section.tension_steel, section.mirrored.tension_steel
-            beta = min(max(0.85 - 0.05 * (fc - 28.0) / 7.0, 0.65), 0.85)
-            fy = steel.fy / 1e6
-            balanced = 0.85 * beta * fc / fy * 0.003 / (0.003 + steel.fy / steel.es)
+            balanced = aci_318.balanced_ratio(fc, steel.fy / 1e6, steel.es / 1e6)
             bars = 1e6 * (pulled - pressed) / (width * depth) / balanced
             stress = at_yield / (width * depth * math.sqrt(fc))
             sound = spacing <= depth / 3.0 and hoops >= 0.75 * at_yield
-            a, b, io, _ = beam_rotations(bars, stress, conforming=sound)
+            a, b, io, _ = asce_41.beam_rotations(bars, stress, conforming=sound)
             limits, source = (io, a, b), f"table 10-7 i {'C' if sound else 'NC'}"
     return _Limits(
         plastic, yielding, tuple(knowledge * one for one in limits), knowledge * strength, source
@@ -303,7 +265,7 @@ def _ec_8_joint(d: _Demand) -> _Limits:
     places, fc = [y for y, _, _ in column.bars], column.concrete.fc
     # (5.34): the wider of column and beam, up to half the depth of the column beyond the other.
     narrow, wide = sorted((column.width, beam.web_width))
-    strength = formulas.ec_8_joint_strength(
+    strength = en_1998.joint_strength(
         fc / 1e6, 1e3 * min(wide, narrow + 0.5 * column.depth), 1e3 * (max(places) - min(places)),
         max(d.axial, 0.0) / (column.gross_area * fc), exterior=d.kind == "exterior joint",
     )  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 from rbsdem import _arguments, _package
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
-from rbsdem.checks import formulas
+from rbsdem.checks import aci_318, asce_41, formulas
 from rbsdem.checks.formulas import Quantities, quantities
 from rbsdem.checks.limit_states import limit_states
 from rbsdem.curves.envelope import envelope, strength_loss
@@ -172,18 +172,18 @@ class _Drawn:
         return self.moment / self.q.span
 
     @cached_property
-    def rotations(self) -> formulas.Rotations:
+    def rotations(self) -> asce_41.Rotations:
         """Plastic rotations of ASCE 41."""
         q, ratio = self.q, self.force / formulas.asce_41_shear_strength(self.q)
         given = q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt
-        return formulas.asce_41_rotations(*given, circle=q.round)
+        return asce_41.column_rotations(*given, circle=q.round)
 
     @property
     def wall_shear(self) -> float:
         """Nominal shear strength of a wall by ACI 318-19 [N]."""
         q = self.q
         ties = q.tie_ratio, q.fyt
-        return formulas.aci_318_wall_shear(q.fc, q.width * q.depth, q.span / q.depth, *ties)
+        return aci_318.wall_shear(q.fc, q.width * q.depth, q.span / q.depth, *ties)
 
     def least_of_wall(self, drift: Callable[[float, float, float, float], float]) -> float:
         """Return the lesser drift of both directions.
@@ -202,7 +202,7 @@ class _Drawn:
         """Return the drift capacity of a wall by ACI 318-19."""
         shear = min(1e3 * moment / self.q.span, self.wall_shear)
         stress = shear / (self.q.width * self.q.depth)
-        return formulas.aci_318_wall_drift(length, width, axis, stress, self.q.fc)
+        return aci_318.wall_drift(length, width, axis, stress, self.q.fc)
 
     @cached_property
     def haselton(self) -> formulas.Haselton:
@@ -226,7 +226,7 @@ _FORMULAS: dict[str, Callable[[_Drawn], float]] = {
     "yield.curvature": lambda c: 1e3 * c.yielding[0],
     "hinge.priestley": lambda c: 1e-3 * formulas.hinge_length_priestley(c.q),
     "hinge.paulay": lambda c: 1e-3 * formulas.hinge_length_paulay(c.q),
-    "asce_41.stiffness": lambda c: formulas.asce_41_stiffness(c.q.axial_load_ratio),
+    "asce_41.stiffness": lambda c: asce_41.column_stiffness(c.q.axial_load_ratio),
     "asce_41.shear": lambda c: formulas.asce_41_shear_strength(c.q),
     "asce_41.a": lambda c: c.rotations.a,
     "asce_41.b": lambda c: c.rotations.b,

@@ -1,8 +1,7 @@
-"""Formulas of codes and regressions, and the quantities of a drawing that they use.
+"""Quantities of a drawing that formulas use, clauses of codes applied to them, and regressions.
 
-The functions of ASCE 41 are those of ASCE 41-17, chapter 10 (ACI 369.1-17), those of EC 8 those of
-EN 1998-3:2005, annex A, for rectangles: mean values, gamma_el = 1; that code divides by 1.5 (A.1),
-1.8 (A.3) and 1.15 (A.12) in primary elements.
+The clauses themselves are in `asce_41`, `en_1998` and `aci_318`. Those of EN 1998-3 are mean
+values, gamma_el = 1; that code divides by 1.5 (A.1), 1.8 (A.3) and 1.15 (A.12) in primary elements.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rbsdem.checks import asce_41, en_1998
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Bar
 from rbsdem.model.shape import Section, checked_section
@@ -223,108 +223,13 @@ def _mean(parts: _Parts, value: Callable[[Bar], float]) -> float:
     return sum(share * bar[1] * value(bar) for bar, share in parts) / _area(parts)
 
 
-# ---- ASCE 41-17, chapter 10 (ACI 369.1-17): stiffness, shear strength, plastic rotations ---------
-
-
-@dataclass(frozen=True)
-class Rotations:
-    """Plastic rotations of the backbone and acceptance criteria [rad].
-
-    Attributes
-    ----------
-    a, b : float
-        Up to the loss of lateral strength, and of the axial load.
-    c : float
-        Residual strength over strength.
-    """
-
-    a: float
-    b: float
-    c: float
-
-    @property
-    def io(self) -> float:
-        """Immediate occupancy."""
-        return min(0.15 * self.a, 0.005)
-
-    @property
-    def ls(self) -> float:
-        """Life safety."""
-        return 0.5 * self.b
-
-    @property
-    def cp(self) -> float:
-        """Collapse prevention."""
-        return 0.7 * self.b
-
-
-def asce_41_stiffness(axial_load_ratio: float) -> float:
-    """Return E I_eff/(E_c I_g): 0.3 up to 0.1 f'c A_g, 0.7 from 0.5 on (table 10-5)."""
-    return min(max(0.3 + (axial_load_ratio - 0.1), 0.3), 0.7)
+# ---- clauses of codes ----------------------------------------------------------------------------
 
 
 def asce_41_shear_strength(q: Quantities, ductility: float = 1.0) -> float:
-    """Return V_Col [N] (10.4.2.3.1, normal-weight concrete).
-
-    k (alpha A_v f_yt d/s + 0.5 sqrt(f'c)/(M/(V d)) sqrt(1 + N/(0.5 sqrt(f'c) A_g)) 0.8 A_g), with
-    M/(V d) from 2 to 4; k = 1 up to a displacement ductility of 2, 0.7 from 6 on; alpha = 1 up to
-    s/d = 0.75, 0 from 1 on.
-
-    Parameters
-    ----------
-    q : Quantities
-        The column.
-    ductility : float, optional
-        Displacement over that at yield.
-    """
-    tensile = 0.5 * math.sqrt(q.fc)
-    slender = min(max(q.span / q.d, 2.0), 4.0)
-    pressed = math.sqrt(max(1.0 + q.load / (tensile * q.gross_area), 0.0))
-    concrete = tensile / slender * pressed * 0.8 * q.gross_area
-    share = min(max((1.0 - q.spacing / q.d) / 0.25, 0.0), 1.0)
-    ties = share * q.tie_area * q.fyt * q.d / q.spacing
-    return min(max(1.15 - 0.075 * ductility, 0.7), 1.0) * (ties + concrete)
-
-
-def asce_41_rotations(
-    axial_load_ratio: float,
-    tie_ratio: float,
-    shear_ratio: float,
-    fc: float,
-    fyt: float,
-    *,
-    circle: bool = False,
-) -> Rotations:
-    """Return plastic rotations of columns not controlled by splices (tables 10-8, 10-9).
-
-    Parameters
-    ----------
-    axial_load_ratio : float
-        N/(A_g f'c).
-    tie_ratio : float
-        A_v/(b s); taken as 0.0175 at most. Below 0.0005 the relations do not apply.
-    shear_ratio : float
-        Shear at flexural yield over `asce_41_shear_strength` at low ductility; 0.2 at least.
-    fc, fyt : float
-        Strengths of concrete and ties [MPa].
-    circle : bool, optional
-        Table 10-9, for circles.
-    """
-    nu, rho, r = axial_load_ratio, min(tie_ratio, 0.0175), max(shear_ratio, 0.2)
-    if circle:
-        a = max(0.06 - 0.06 * nu + 1.3 * rho - 0.037 * r, 0.0)
-    else:
-        a = max(0.042 - 0.043 * nu + 0.63 * rho - 0.023 * r, 0.0)
-    top = 0.65 if circle else 0.5
-
-    def loss(pressed: float) -> float:
-        return top / (5.0 + max(pressed, 0.1) / 0.8 / rho * fc / fyt) - 0.01
-
-    b = loss(nu) if nu <= 0.5 else loss(0.5) * max(0.7 - nu, 0.0) / 0.2
-    return Rotations(a, max(a, b), max(0.24 - 0.4 * nu, 0.0))
-
-
-# ---- EN 1998-3:2005, annex A: chord rotations and shear strength of rectangular columns ----------
+    """Return V_Col of a column, `asce_41.column_shear_strength` [N]."""
+    ties = q.tie_area, q.fyt, q.spacing
+    return asce_41.column_shear_strength(q.fc, q.gross_area, q.d, q.span, q.load, ties, ductility)
 
 
 def ec_8_confinement(q: Quantities) -> float:
@@ -335,30 +240,25 @@ def ec_8_confinement(q: Quantities) -> float:
     """
     if not min(q.core_width, q.core_depth) > 0:
         return 0.0
-    sides = 0.0
+    gaps = []
     for legs, length in ((q.legs, q.corner_width), (q.legs_across, q.d - q.d2)):
-        gaps = max(legs - 1.0, 1.0)
-        sides += 2.0 * gaps * (length / gaps) ** 2
-    held = max(1.0 - sides / (6.0 * q.core_width * q.core_depth), 0.0)
-    for core in (q.core_width, q.core_depth):
-        held *= max(1.0 - 0.5 * q.spacing / core, 0.0)
-    return held
+        number = max(legs - 1.0, 1.0)
+        gaps.append((2.0 * number, length / number))
+    return en_1998.confinement((q.core_width, q.core_depth), q.spacing, tuple(gaps))
 
 
 def ec_8_ultimate_rotation(q: Quantities) -> float:
-    """Return theta_um of (A.1), the whole chord rotation [rad]."""
-    steel, slender = (_steel(q) * q.fc) ** 0.225, min(9.0, q.slenderness) ** 0.35
-    return float(0.016 * 0.3 ** _nu(q) * steel * slender * 25.0 ** _confined(q))
+    """Return theta_um of a column, `en_1998.ultimate_rotation` [rad]."""
+    return en_1998.ultimate_rotation(_nu(q), _steel(q), q.fc, q.slenderness, _confined(q))
 
 
 def ec_8_plastic_rotation(q: Quantities) -> float:
-    """Return theta_um,pl of (A.3), its plastic part [rad]."""
-    steel, slender = _steel(q) ** 0.3, min(9.0, q.slenderness) ** 0.35
-    return float(0.0145 * 0.25 ** _nu(q) * steel * q.fc**0.2 * slender * 25.0 ** _confined(q))
+    """Return theta_um,pl of a column, `en_1998.plastic_rotation` [rad]."""
+    return en_1998.plastic_rotation(_nu(q), _steel(q), q.fc, q.slenderness, _confined(q))
 
 
 def ec_8_yield_rotation(q: Quantities, *, cracked: bool) -> float:
-    """Return theta_y of (A.10b) [rad].
+    """Return theta_y of a column, `en_1998.yield_rotation` [rad].
 
     Parameters
     ----------
@@ -367,123 +267,26 @@ def ec_8_yield_rotation(q: Quantities, *, cracked: bool) -> float:
     cracked : bool
         Whether diagonal cracks come before yield, which shifts the tension (a_V = 1).
     """
-    curvature = yield_point(q)[0]
-    bent = curvature * (q.span + (q.d - q.d2 if cracked else 0.0)) / 3.0
-    sheared = 0.0014 * (1.0 + 1.5 * q.depth / q.span)
-    return bent + sheared + curvature * q.bar * q.fy / (8.0 * math.sqrt(q.fc))
+    shift = q.d - q.d2 if cracked else 0.0
+    slip = q.bar, q.fy, q.fc
+    return en_1998.yield_rotation(yield_point(q)[0], q.span, q.depth, shift, slip)
 
 
 def ec_8_cracks_in_shear(q: Quantities) -> bool:
-    """Return whether the shear at yield is beyond V_R,c of EN 1992-1-1, 6.2.2 (mean)."""
-    size = min(1.0 + math.sqrt(200.0 / q.d), 2.0)
-    steel = min(q.tension / (q.width * q.d), 0.02)
-    pressed = min(q.load / q.gross_area, 0.2 * q.fc)
-    stress = 0.18 * size * (100.0 * steel * q.fc) ** (1.0 / 3.0)
-    stress = max(stress, 0.035 * size**1.5 * math.sqrt(q.fc)) + 0.15 * pressed
-    return bool(stress * q.width * q.d < yield_point(q)[1] / q.span)
+    """Return whether the shear at yield is beyond `en_1998.shear_without_stirrups`."""
+    ratio, pressed = q.tension / (q.width * q.d), q.load / q.gross_area
+    strength = en_1998.shear_without_stirrups(q.fc, q.width, q.d, ratio, pressed)
+    return bool(strength < yield_point(q)[1] / q.span)
 
 
 def ec_8_shear_resistance(q: Quantities, plastic_ductility: float = 0.0) -> float:
-    """Return V_R of (A.12), controlled by the stirrups [N].
-
-    Parameters
-    ----------
-    q : Quantities
-        The column.
-    plastic_ductility : float, optional
-        Displacement over that at yield, less one.
-    """
+    """Return V_R of a column, `en_1998.shear_resistance` [N]."""
     area = q.width * q.d
     strut = (q.depth - yield_point(q)[2] * q.d) / (2.0 * q.span)
     strut *= min(q.load, 0.55 * area * q.fc)
-    concrete = 0.16 * max(0.5, 100.0 * q.steel_ratio) * (1.0 - 0.16 * min(5.0, q.slenderness))
     ties = q.tie_area / q.spacing * (q.d - q.d2) * q.fyt
-    falling = 1.0 - 0.05 * min(5.0, max(plastic_ductility, 0.0))
-    return strut + falling * (concrete * math.sqrt(q.fc) * area + ties)
-
-
-def ec_8_joint_strength(
-    fc: float, width: float, depth: float, axial_load_ratio: float, *, exterior: bool
-) -> float:
-    """Return the horizontal shear at which the diagonal strut of a joint crushes [N].
-
-    EN 1998-1:2004, 5.5.3.3: eta f_c sqrt(1 - nu_d/eta) b_j h_jc with eta = 0.6 (1 - f_c/250), and
-    0.8 of it where beams do not come from both sides.
-
-    Parameters
-    ----------
-    fc : float
-        Strength of the concrete [MPa].
-    width, depth : float
-        b_j, and h_jc between the outer bars of the column [mm].
-    axial_load_ratio : float
-        nu_d of the column above the joint.
-    exterior : bool
-        Whether a side is without a beam.
-    """
-    eta = 0.6 * (1.0 - fc / 250.0)
-    left = math.sqrt(max(1.0 - axial_load_ratio / eta, 0.0))
-    return (0.8 if exterior else 1.0) * eta * fc * width * depth * left
-
-
-def aci_318_wall_shear(
-    fc: float, area: float, slenderness: float, tie_ratio: float, tie_yield: float
-) -> float:
-    """Return the nominal shear strength of a wall, ACI 318-19, 18.10.4.1 and 18.10.4.4 [N].
-
-    A_cv (alpha_c sqrt(f'c) + rho_t f_yt), alpha_c from 0.25 for walls as high as 1.5 lengths to
-    0.17 from 2 on, and at most 0.83 sqrt(f'c) A_cv.
-
-    Parameters
-    ----------
-    fc : float
-        Cylinder strength f'c [MPa].
-    area : float
-        A_cv, of length and thickness of the web [mm2].
-    slenderness : float
-        Height over length of the wall, h_w/l_w; M/(V l_w) for a wall with a force at its top.
-    tie_ratio, tie_yield : float
-        Ratio of the horizontal bars, rho_t, and their yield stress [-, MPa].
-    """
-    alpha = min(max(0.25 - 0.16 * (slenderness - 1.5), 0.17), 0.25)
-    root = math.sqrt(fc)
-    return area * min(alpha * root + tie_ratio * tie_yield, 0.83 * root)
-
-
-def aci_318_wall_drift(
-    length: float, width: float, axis: float, shear_stress: float, fc: float
-) -> float:
-    """Return the drift capacity of a wall with special boundary elements, ACI 318-19, 18.10.6.2(b).
-
-    (4 - l_w c/(50 b^2) - V_e/(0.66 sqrt(f'c) A_cv))/100 of the height, 0.015 at the least.
-
-    Parameters
-    ----------
-    length, width, axis : float
-        Length of the wall l_w, width of its zone in compression b, and depth of the neutral axis c
-        at the nominal moment under the axial load, in one unit.
-    shear_stress, fc : float
-        V_e/A_cv and the cylinder strength [MPa].
-    """
-    slender = length * axis / (50.0 * width**2)
-    return max(0.01 * (4.0 - slender - shear_stress / (0.66 * math.sqrt(fc))), 0.015)
-
-
-def wall_drift_at_loss(length: float, width: float, axis: float) -> float:
-    """Return the drift at which a wall that bends has lost a fifth of its strength.
-
-    0.078 (l_w c/b^2)^-0.41, l_w c/b^2 from 5 to 55: fitted to 39 walls of 20 publications that
-    bent, alone or with shear, and lost 15 % and more (`studies/walls_measured.py`); test over this
-    1.02, standard deviation of logarithms 0.29 with publications left out (ACI 318-19,
-    18.10.6.2(b): 0.33).
-
-    Parameters
-    ----------
-    length, width, axis : float
-        As for `aci_318_wall_drift`.
-    """
-    slender = min(max(length * axis / width**2, 5.0), 55.0)
-    return 0.078 * math.exp(-0.41 * math.log(slender))
+    given = strut, area, q.steel_ratio, q.slenderness, q.fc, ties
+    return en_1998.shear_resistance(*given, plastic_ductility)
 
 
 def _nu(q: Quantities) -> float:
@@ -502,6 +305,23 @@ def _confined(q: Quantities) -> float:
 
 
 # ---- Yield of a rectangular section in closed form, and lengths of plastic hinges ----------------
+
+
+def wall_drift_at_loss(length: float, width: float, axis: float) -> float:
+    """Return the drift at which a wall that bends has lost a fifth of its strength.
+
+    0.078 (l_w c/b^2)^-0.41, l_w c/b^2 from 5 to 55: fitted to 39 walls of 20 publications that
+    bent, alone or with shear, and lost 15 % and more (`studies/walls_measured.py`); test over this
+    1.02, standard deviation of logarithms 0.29 with publications left out (ACI 318-19,
+    18.10.6.2(b): 0.33).
+
+    Parameters
+    ----------
+    length, width, axis : float
+        As for `aci_318.wall_drift`.
+    """
+    slender = min(max(length * axis / width**2, 5.0), 55.0)
+    return 0.078 * math.exp(-0.41 * math.log(slender))
 
 
 def yield_point(q: Quantities, modulus: float | None = None) -> tuple[float, float, float]:

@@ -18,7 +18,9 @@ from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
+from rbsdem.checks import asce_41 as codes
 from rbsdem.checks.acceptance import between, rows_at
+from rbsdem.checks.en_1998 import target_of_one_mass
 from rbsdem.curves.envelope import SOURCES, Envelope, Idealisation, envelope
 from rbsdem.errors import InputError, warn
 from rbsdem.many.ensemble import ensemble
@@ -407,9 +409,6 @@ def _pdelta_slope(frame: Frame, shape: Array, gamma: float) -> float:
     return gamma * float(np.sum(parts.compression * (shape[end] - shape[start]) ** 2 / length))
 
 
-#: Coefficient a of C_1 by the class of the site (ASCE 41-17, 7.4.1.3.1).
-SITES = {"A": 130.0, "B": 130.0, "C": 90.0, "D": 60.0, "E": 60.0, "F": 60.0}
-
 #: Share of displacements to which methods iterate, and their most passes.
 _CLOSE, _PASSES = 1e-10, 400
 #: Steps over a curve among which the last point of performance is looked for.
@@ -583,7 +582,7 @@ def asce_41(
         Whether lambda is 0.8 in the limit mu_max, else 0.2; by default where S_a(1 s) is 0.6 g or
         more.
     """
-    a = SITES[_arguments.choice(site_class, "target: site_class", SITES)]
+    site = _arguments.choice(site_class, "target: site_class", codes.SITES)
     first = curve.gamma if c0 is None else _arguments.number(c0, "target: c0", above=0.0)
     found: dict[str, float] = {}
 
@@ -592,12 +591,12 @@ def asce_41(
         elastic = end <= curve.elastic
         period = curve.period * math.sqrt(curve.stiffness / lines.stiffness)
         sa = spectrum.sa(period)
-        usual = 1.0 if curve.storeys <= 2 or period > 1.0 else 0.9
+        usual = codes.mass_factor(curve.storeys, period)
         found["C_m"] = usual if cm is None else _arguments.number(cm, "target: cm", above=0.0)
         strength = sa * found["C_m"] * curve.total_mass / lines.yield_force
-        more = 0.0 if elastic else max(strength - 1.0, 0.0)
-        found["C_1"] = 1.0 if period > 1.0 else 1.0 + more / (a * max(period, 0.2) ** 2)
-        found["C_2"] = 1.0 if period > 0.7 else 1.0 + (more / period) ** 2 / 800.0
+        yields = 1.0 if elastic else strength
+        found["C_1"] = codes.inelastic_factor(yields, period, site)
+        found["C_2"] = codes.pinching_factor(yields, period)
         reached = first * found["C_1"] * found["C_2"] * spectrum.sd(period)
         if elastic:
             strength = reached / curve.elastic
@@ -685,9 +684,9 @@ def _most_strength(
     leaning = -curve.pdelta_slope / lines.stiffness
     near = spectrum.sa(1.0) >= 0.6 * STANDARD_GRAVITY * (1 - 1e-9)
     near = near if near_field is None else _arguments.boolean(near_field, "target: near_field")
-    slope = leaning + (0.8 if near else 0.2) * (falling - leaning)
-    power = 1.0 + 0.15 * math.log(period)
-    limit = lines.end_displacement / lines.yield_displacement + abs(slope) ** -power / 4.0
+    slope = codes.negative_slope(falling, leaning, near_field=near)
+    ductility = lines.end_displacement / lines.yield_displacement
+    limit = codes.largest_strength(ductility, slope, period)
     return limit, {"alpha_2": falling, "alpha_PDelta": leaning, "alpha_e": slope}
 
 
@@ -713,10 +712,7 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         period = 2.0 * math.pi * math.sqrt(curve.modal_mass * at / force)
         sa, elastic = spectrum.sa(period), spectrum.sd(period)
         strength = sa * curve.modal_mass / force
-        reached = elastic
-        if period < spectrum.corner and strength > 1.0:
-            reached = elastic / strength * (1.0 + (strength - 1.0) * spectrum.corner / period)
-            reached = min(max(reached, elastic), 3.0 * elastic)
+        reached = target_of_one_mass(elastic, strength, period, spectrum.corner)
         found.update({"T*": period, "q_u": strength, "d_et*": elastic, "d_t*": reached})
         return curve.gamma * reached
 

@@ -329,11 +329,21 @@ def _outermost(section: Section) -> tuple[float, Steel]:
 _ACI_STRAIN = 0.003
 
 
+def block_share(fc: float) -> float:
+    """Return beta_1, the depth of the block over that of the neutral axis (22.2.2.4.3).
+
+    Parameters
+    ----------
+    fc : float
+        Strength of the concrete [MPa].
+    """
+    return min(max(0.85 - 0.05 * (fc - 28.0) / 7.0, 0.65), 0.85)
+
+
 def _aci_block(section: Section) -> _Block:
     """Return the block of ACI 318-19, 22.2.2.4."""
     fc = section.concrete_law["fc"]
-    share = min(max(0.85 - 0.05 * (fc / _MPA - 28.0) / 7.0, 0.65), 0.85)
-    return _Block(section, 0.85 * fc, share)
+    return _Block(section, 0.85 * fc, block_share(fc / _MPA))
 
 
 def _aci_strains(section: Section, axis: float) -> Callable[[Array], Array]:
