@@ -7,15 +7,18 @@ programs know them. `case.py` writes both.
 
 import csv
 import math
+from collections.abc import Mapping
+from typing import Any
 from xml.etree import ElementTree
 
+from rbsdem.fragility import Fragility
 from rbsdem.motions import STANDARD_GRAVITY
 
 #: Standard deviations of the logarithm that the levels of a curve reach to.
 ENDS = 4.0
 
 
-def states(curves):
+def states(curves: Mapping[str, Fragility]) -> dict[str, tuple[float, float]]:
     """Return median [g] and dispersion of each limit state, by growing median."""
     ordered = sorted(curves.items(), key=lambda item: item[1].theta)
     return {
@@ -24,7 +27,7 @@ def states(curves):
     }
 
 
-def write_nrml(path, curves, intensity, name):
+def write_nrml(path: str, curves: Mapping[str, Fragility], intensity: Any, name: str) -> None:
     """Write a fragility model for the engine; `name` is the taxonomy of the exposure model."""
     known, period = states(curves), f"({intensity.period:.6g})"
     imt = {"pga": "PGA", "sa_t1": f"SA{period}", "sa_avg": f"AvgSA{period}"}[intensity.name]
@@ -49,13 +52,13 @@ def write_nrml(path, curves, intensity, name):
     ElementTree.ElementTree(nrml).write(path, encoding="utf-8", xml_declaration=True)
 
 
-def write_pelicun(path, curves, intensity, name):
+def write_pelicun(path: str, curves: Mapping[str, Fragility], intensity: Any, name: str) -> None:
     """Write a damage model; pelicun has no averaged spectral acceleration."""
     demand = {
         "pga": "Peak Ground Acceleration",
         "sa_t1": f"Peak Spectral Acceleration|{intensity.period:.2f}",
     }[intensity.name]
-    row = {
+    row: dict[str, object] = {
         "ID": name,
         "Incomplete": 0,
         "Demand-Type": demand,

@@ -21,16 +21,6 @@ beam = RectangularSection(
     cover=0.025,
 )  # fmt: skip
 brick, window = Infill(0.2, fm=2.5e6), Infill(0.2, fm=2.5e6, opening=(1.4, 1.3))
-drawing = {
-    "columns": column,
-    "beams": beam,
-    "dead_load": 25e3,
-    "live_load": 8e3,
-    "self_weight": True,
-    "mass": "from_loads",
-    "kinematics": "pdelta",
-    "damping": 0.05,
-}
 # Shops below: the ground storey is open.
 panels = {
     "bare": None,
@@ -38,9 +28,13 @@ panels = {
     "infilled": {(0, 0): brick, (2, 0): window},
 }
 frames = {
-    name: Frame.grid([3.2] * 3, [4.8] * 3, **drawing, infills=cells)
+    name: Frame.grid(
+        [3.2] * 3, [4.8] * 3, columns=column, beams=beam, infills=cells,
+        dead_load=25e3, live_load=8e3, self_weight=True, mass="from_loads",
+        kinematics="pdelta", damping=0.05,
+    )
     for name, cells in panels.items()
-}
+}  # fmt: skip
 
 # Pushed to a roof drift of 3 %. A storey that drifts by 10 % has collapsed.
 pushes = {name: rbsdem.pushover(frame, drift=0.03) for name, frame in frames.items()}

@@ -415,7 +415,7 @@ def test_a_frame_is_pushed_and_its_hinges_show(frame):
     assert len(page.all("#frame .member")) == 15
     page.one("#play").click()
     page.wait(lambda: page.value("#scrub") == page.one("#scrub").get_attribute("max"))
-    assert page.all("#frame .hinge.beyond")[1:]
+    assert page.all("#frame .hinge.yielded")[1:]
     assert page.text("#scrubbed").startswith("3 %")
     assert not page.all("#statetable tr.later")
     # The target displacement, with the levels that each end has passed.

@@ -121,6 +121,8 @@ def test_every_field_of_a_case_counts_for_equality():
         "title": "pulled", "column": OPEN, "method": "auto", "time": CASE.time + 1.0,
         "displacement": -PATH, "force": PATH, "ground_acceleration": PATH,
         "vertical_acceleration": PATH, "axial_load": PATH, "settings": {},
+        "target": {"method": "en_1998"}, "records": {"folder": "motions"},
+        "assess": [{"code": "asce_41"}], "files": {"file": "rows.csv"},
     }  # fmt: skip
     assert set(changes) == {field.name for field in fields(CASE)}
     for name, value in changes.items():
