@@ -4,10 +4,12 @@ module test_rules
    use, intrinsic :: iso_fortran_env, only: int64
    use any_rule, only: detours, loops, detour_result, loop_result, random_spring, random_path, yield_of
    use check, only: unit_test, check_close, check_equal, check_same, check_true
+   use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type
+   use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_registry, only: rule_names
+   use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use samples, only: make_springs, random_type
@@ -75,6 +77,8 @@ contains
             call random_history(trim(rule_names(rule)), history, spec, d)
             call make_springs(spring, [spec])
             k = spec%initial_stiffness()
+            ! The mean of both sides, of which one may carry nothing.
+            if (has_one_side(spec)) k = 2.0_wp*k
             do j = 1, size(d)
                s = merge(1, -1, d(j) > spring%d(1))
                do lines = 1, 100000
@@ -101,6 +105,21 @@ contains
          end do
       end do
    end subroutine lines_meet
+
+   !> Whether a spring carries forces of one sign alone.
+   logical function has_one_side(spec)
+      type(spring_record), intent(in) :: spec
+      type(key_type), allocatable :: keys(:)
+      integer :: i
+
+      has_one_side = .false.
+      if (spec%rule == 'layered') return
+      call keys_of(trim(spec%rule), keys)
+      do i = 1, size(keys)
+         if (keys(i)%name /= 'f_y' .and. keys(i)%name /= 'f_y_neg') cycle
+         has_one_side = has_one_side .or. (is_given(spec%value(i)) .and. .not. abs(spec%value(i)) > 0.0_wp)
+      end do
+   end function has_one_side
 
    !> On a path cut into increments every move ends at the same force.
    subroutine increments(error)
