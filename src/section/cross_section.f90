@@ -90,7 +90,7 @@ contains
       end associate
    end subroutine enclose_core
 
-   !> What the hoops at y < 0 or y > 0 confine.
+   !> The core at y < 0 or y > 0, with the hoops that confine it.
    pure type(hooped_core) function hooped_core_of(section, side) result(core)
       type(section_type), intent(in) :: section
       integer, intent(in) :: side

@@ -301,7 +301,7 @@ class Assessment(Tabular):
 
     @property
     def assumed(self) -> str:
-        """What the limits take for granted."""
+        """Assumptions of the limits, in a sentence."""
         if self.code == "asce_41":
             return "Splices and anchorages are sound (table 10-7, rows iii and iv, are not judged)."
         if self.detailing == 1.0:

@@ -4,7 +4,7 @@ Tests of one series (sisters) share a laboratory: its steel, its concrete, its r
 how far the strength, the stiffness and the degradation of a laboratory are off, and how far those
 of a test in it. Each given test is followed along its path; the loop, linear in the logarithms of
 three factors, tells them with some information, and the posterior mean of the laboratory moves the
-prediction of another column. What is left of its scatter makes the band narrower.
+prediction of another column. The scatter that remains is smaller, and so the band is narrower.
 """
 
 from __future__ import annotations
