@@ -53,10 +53,13 @@ contains
       !> Tests run and failed so far
       integer, intent(inout) :: run, failed
       type(error_type), allocatable :: error
-      integer :: i
+      integer :: i, length
 
+      call random_seed(size=length)
       do i = 1, size(tests)
          if (index(tests(i)%name, pattern) == 0) cycle
+         ! Each test draws the same numbers in each run, alone or among others.
+         call random_seed(put=spread(i, 1, length))
          if (allocated(error)) deallocate (error)
          call tests(i)%run(error)
          run = run + 1

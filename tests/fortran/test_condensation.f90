@@ -26,10 +26,11 @@ contains
                unit_test('units scaled by powers of two give the same bits', scaled)]
    end subroutine collect_condensation
 
-   !> Springs like those of a member of length 3: openings, slips and hinges.
+   !> Springs like those of a member: openings, slips and hinges, which are not at one place. Hinges without
+   !> stiffness whose distance is below 1e-6 of the member are one.
    subroutine draw(p, k0)
       real(wp), intent(out) :: p(3, springs), k0(springs)
-      real(wp) :: u(4)
+      real(wp) :: u(4), place
       integer :: j
 
       do j = 1, springs
@@ -41,9 +42,10 @@ contains
          case (1)
             p(:, j) = [1.0_wp, 0.0_wp, 0.0_wp]
          case (2)
-            p(:, j) = [0.0_wp, u(2) - 1.0_wp, u(2)]
+            place = merge(0.49_wp*u(2), 1.0_wp - 0.49_wp*u(2), j < 4)
+            p(:, j) = [0.0_wp, place - 1.0_wp, place]
          case default
-            p(:, j) = [0.3_wp*u(3) - 0.1_wp, u(2) - 1.0_wp, u(2)]
+            p(:, j) = [sign(0.01_wp + 0.2_wp*u(3), u(4) - 0.3_wp), u(2) - 1.0_wp, u(2)]
          end select
       end do
    end subroutine draw
