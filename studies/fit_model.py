@@ -42,7 +42,7 @@ import numpy as np
 from rbsdem import peer
 from rbsdem.calibration.fit import Target
 from rbsdem.errors import AccuracyWarning, RbsdemError
-from rbsdem.run.result import reached_force
+from rbsdem.run.response import reached_force
 from rbsdem.section.parameters import ModelParameters, parameters, table
 
 ROOT = Path(__file__).resolve().parents[1]

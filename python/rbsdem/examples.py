@@ -10,8 +10,8 @@ from dataclasses import replace
 from rbsdem.model.column import Column
 from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection
-from rbsdem.section.building import Frame
 from rbsdem.section.columns import column
+from rbsdem.section.frame import Frame
 
 
 def house(storeys: int = 4, bays: int = 2) -> Frame:

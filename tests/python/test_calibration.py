@@ -18,7 +18,7 @@ from rbsdem.curves.metrics import N_POINTS, half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.model.column import Parameter
 from rbsdem.peer import find_history, read_peer
-from rbsdem.run import result as run_result
+from rbsdem.run import response as run_result
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
 
 PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"

@@ -25,9 +25,9 @@ from rbsdem.cli import main
 from rbsdem.cli.columns import start_of
 from rbsdem.codes import code_values
 from rbsdem.errors import AccuracyWarning
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.output import frames as figures_of_frames
 from rbsdem.run.case import case_of
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.springs import Elastic
 from rbsdem.web import answers as web_answers
 from rbsdem.web import exports, frames

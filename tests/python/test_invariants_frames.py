@@ -18,7 +18,7 @@ from strategies_frames import FAMILIES, MODULUS, RULES, building, drifts, frame
 
 import rbsdem
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
-from rbsdem.model.frame_result import FrameResult
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.springs import Bilinear, Elastic
 
 

@@ -336,7 +336,7 @@ def test_state_of_the_section():
     bars = BENT.strains(1).part == "bar"
     assert strains.get_lines()[1].get_xdata() == pytest.approx(100 * value[bars])
     faces = [patch.get_facecolor()[0] for patch in section.patches if isinstance(patch, Circle)]
-    buckled = rbsdem.checks.limit_states.buckling_strain(SECTION, LAYERED)
+    buckled = rbsdem.section.criteria.buckling_strain(SECTION, LAYERED)
     assert (len(faces), faces.count(0.0)) == (8, int((value[bars] > buckled).sum()))
     assert 0 < faces.count(0.0) < 8
 

@@ -34,8 +34,8 @@ from rbsdem.curves.metrics import N_POINTS, PathPoints, half_cycle_numbers, work
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Parameter
-from rbsdem.model.frame import Structure
-from rbsdem.run.result import reached_force
+from rbsdem.run.response import reached_force
+from rbsdem.section.frame import Structure
 
 #: Errors that may be minimised. In "balanced", an error of 1 in the ratio of peaks, or of energies,
 #: counts as an nrmse of `RATIO_WEIGHT`.

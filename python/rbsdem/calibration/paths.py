@@ -18,8 +18,8 @@ from typing import Any
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, Parameter
-from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.springs import Spring
+from rbsdem.section.frame import Frame, Structure, checked_structure
 
 #: Parameters of springs are searched within this factor, unless their rule sets other bounds.
 REACH = 5.0

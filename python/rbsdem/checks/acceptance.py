@@ -22,8 +22,9 @@ from rbsdem._types import Array, DataFrame
 from rbsdem.checks import aci_318, asce_41, en_1998, formulas
 from rbsdem.errors import InputError
 from rbsdem.model.frame import FrameMember, MemberGeometry
-from rbsdem.model.frame_result import FAILS, FrameResult
 from rbsdem.model.shape import RectangularSection, Section, TeeSection
+from rbsdem.run.frame_result import FAILS, FrameResult
+from rbsdem.section.quantities import quantities
 from rbsdem.section.strength import nominal_moment
 
 AcceptanceCode = Literal["asce_41", "en_1998_3"]
@@ -210,7 +211,7 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
     if d.kind == "column":
         if isinstance(section, TeeSection):
             raise InputError("columns with a flange are not in tables 10-8 and 10-9")
-        q = formulas.quantities(section, d.span, load)
+        q = quantities(section, d.span, load)
         if q.tie_ratio < 0.0005:
             raise InputError(f"rho_t = {q.tie_ratio:.2g} is below 0.0005, where table 10-8 begins")
         strength = formulas.asce_41_shear_strength(q)
@@ -247,7 +248,7 @@ def _en_1998_3(d: _Demand, primary: bool, detailing: float = 1.0) -> _Limits:
         raise InputError(f"annex A has no relations for this section ({d.section.shape})")
     turned, sheared = _PRIMARY if primary else (1.0, 1.0)
     load = max(d.axial, 0.0) if d.kind == "column" else 0.0
-    q = formulas.quantities(d.section, d.span, load)
+    q = quantities(d.section, d.span, load)
     cracked = formulas.ec_8_cracks_in_shear(q)
     yielding = formulas.ec_8_yield_rotation(q, cracked=cracked)
     ultimate = detailing * formulas.ec_8_ultimate_rotation(q) / turned

@@ -15,15 +15,15 @@ from rbsdem import _arguments, _package
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.checks import aci_318, asce_41, formulas
-from rbsdem.checks.formulas import Quantities, quantities
-from rbsdem.checks.limit_states import limit_states
 from rbsdem.curves.envelope import envelope, strength_loss
 from rbsdem.curves.metrics import Curve, loop_pair, summarise
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.rows import Response
 from rbsdem.model.shape import Section
+from rbsdem.run.column_result import Result
+from rbsdem.run.limit_states import limit_states
 from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.quantities import Quantities, goodnight_buckling_strain, quantities
 from rbsdem.section.strength import (
     axial_failure_drift,
     nominal_moment,
@@ -256,7 +256,7 @@ _FORMULAS: dict[str, Callable[[_Drawn], float]] = {
     "berry.spalling": lambda c: formulas.berry_spalling_drift(c.q),
     "berry.buckling": lambda c: formulas.berry_buckling_drift(c.q),
     "berry.rotation": lambda c: formulas.berry_buckling_rotation(c.q),
-    "goodnight.strain": lambda c: formulas.goodnight_buckling_strain(c.q),
+    "goodnight.strain": lambda c: goodnight_buckling_strain(c.q),
     "goodnight.drift": lambda c: formulas.goodnight_buckling_drift(c.q),
 }
 
@@ -411,7 +411,7 @@ class CodeComparison(Tabular):
     """
 
     values: CodeValues
-    result: Response
+    result: Result
     test: tuple[Array, Array] | None = None
 
     @cached_property
@@ -442,7 +442,7 @@ class CodeComparison(Tabular):
         return f"CodeComparison({', '.join(b.name for b in self.backbones)} beside {self.result})"
 
 
-def compare(values: CodeValues, result: Response, test: Curve | None = None) -> CodeComparison:
+def compare(values: CodeValues, result: Result, test: Curve | None = None) -> CodeComparison:
     """Hold a response, and a test if there is one, against the values of codes.
 
     Parameters

@@ -8,7 +8,7 @@ import numpy as np
 
 from rbsdem._files import data_frame
 from rbsdem.model.frame import FrameMember
-from rbsdem.model.frame_result import FrameResult
+from rbsdem.run.frame_result import FrameResult
 
 if TYPE_CHECKING:
     from pandas import DataFrame

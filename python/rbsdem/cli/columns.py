@@ -22,7 +22,6 @@ from rbsdem._files import claim_folder, data_frame, refuse_other_page, save_fram
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
-from rbsdem.checks.limit_states import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RbsdemError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble
@@ -35,7 +34,6 @@ from rbsdem.many.store import store_status
 from rbsdem.methods.ladder import OF_SETTING
 from rbsdem.methods.physics import Physics
 from rbsdem.methods.study import compare_methods
-from rbsdem.model.frame import Frame
 from rbsdem.motions.motion import GroundMotion, synthetic
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.output import many as ensemble_figures
@@ -43,6 +41,8 @@ from rbsdem.output import methods as methods_output
 from rbsdem.output import tables
 from rbsdem.run.case import Case, read_case
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver
+from rbsdem.section.criteria import WATCHED
+from rbsdem.section.frame import Frame
 from rbsdem.web.answers import tests_of
 from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import write_record, write_report

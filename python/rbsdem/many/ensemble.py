@@ -42,10 +42,10 @@ from rbsdem.many.plan import (
     one_run,
 )
 from rbsdem.many.store import Store
-from rbsdem.model.frame import Frame, Structure
-from rbsdem.model.rows import bibtex, parts_of
-from rbsdem.run.result import Result
+from rbsdem.run.column_result import Result
+from rbsdem.run.rows import bibtex, parts_of
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
+from rbsdem.section.frame import Frame, Structure
 
 #: How often the display is renewed, and a signal seen [s].
 BEAT = 0.2

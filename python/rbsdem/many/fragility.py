@@ -18,7 +18,7 @@ from rbsdem.errors import InputError, warn
 from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
 from rbsdem.many.runs import Runs
-from rbsdem.model.rows import bibtex
+from rbsdem.run.rows import bibtex
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
 _BEYOND = 0.1

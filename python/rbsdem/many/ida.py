@@ -19,7 +19,6 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._progress import progress_bar
 from rbsdem._types import Array, ArrayLike, NDArray, Unpack
-from rbsdem.checks.limit_states import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, WithFragility
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list
@@ -35,8 +34,9 @@ from rbsdem.many.runs import (
     motions_by_name,
     own_records,
 )
-from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
+from rbsdem.section.criteria import WATCHED
+from rbsdem.section.frame import Structure
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5

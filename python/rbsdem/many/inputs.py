@@ -15,12 +15,12 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike
-from rbsdem.checks.limit_states import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.rows import Response, state_of
-from rbsdem.run.result import Result
+from rbsdem.run.column_result import Result
+from rbsdem.run.solve import state_of
+from rbsdem.section.criteria import WATCHED
+from rbsdem.section.frame import Frame, Structure, checked_structure
 
 #: The state of a column at rest.
 AT_REST: Array = np.empty(0)
@@ -137,7 +137,7 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
     """
     if initial is None:
         return [AT_REST] * len(names)
-    if isinstance(initial, (str, os.PathLike, Response, np.ndarray)):
+    if isinstance(initial, (str, os.PathLike, Result, np.ndarray)):
         return [_state(initial, "", faults)] * len(names)
     if isinstance(initial, Mapping):
         unknown = [name for name in initial if name not in names]

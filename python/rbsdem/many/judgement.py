@@ -15,8 +15,9 @@ from rbsdem.many.target import Target, TargetCheck, target
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.run.case import Case
-from rbsdem.run.result import FrameResult, pushover
-from rbsdem.section.building import Frame
+from rbsdem.run.frame_result import FrameResult
+from rbsdem.run.response import pushover
+from rbsdem.section.frame import Frame
 
 #: Keys of a spectrum, by its code.
 _SPECTRA: dict[str, tuple[str, ...]] = {

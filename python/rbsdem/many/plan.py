@@ -15,13 +15,13 @@ import numpy as np
 
 from rbsdem import _core
 from rbsdem._types import Array, NDArray
-from rbsdem.checks.limit_states import criteria, thresholds
 from rbsdem.errors import RbsdemError
 from rbsdem.many import inputs
 from rbsdem.model.column import Column, notes_off
-from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
-from rbsdem.run.result import time_history
+from rbsdem.run.response import time_history
+from rbsdem.section.criteria import criteria, thresholds
+from rbsdem.section.frame import Structure
 
 Integers = NDArray[np.int32]
 

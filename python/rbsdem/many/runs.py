@@ -12,16 +12,16 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
-from rbsdem.checks.limit_states import WATCHED
 from rbsdem.errors import InputError, Interrupted, warn
 from rbsdem.many import inputs
 from rbsdem.many.ensemble import checked_part, ensemble
 from rbsdem.many.plan import FAULT_OF_MEASURE, Share
 from rbsdem.model.column import Column
-from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.run.analysis import modes
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
+from rbsdem.section.criteria import WATCHED
+from rbsdem.section.frame import Frame, Structure
 
 Name = Literal["sa_t1", "pga", "sa_avg"]
 NAMES: tuple[Name, ...] = ("sa_t1", "pga", "sa_avg")

@@ -24,12 +24,12 @@ from rbsdem.checks.en_1998 import target_of_one_mass
 from rbsdem.curves.envelope import SOURCES, Envelope, Idealisation, envelope
 from rbsdem.errors import InputError, warn
 from rbsdem.many.ensemble import ensemble
-from rbsdem.model.frame import Frame
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.motions.design import DesignSpectrum, damping_factor
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.run.analysis import matrices, modes
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.solver import Solver
+from rbsdem.section.frame import Frame
 
 TargetMethod = Literal["asce_41", "en_1998", "capacity_spectrum"]
 

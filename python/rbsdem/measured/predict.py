@@ -16,7 +16,6 @@ from rbsdem import _arguments
 from rbsdem._files import data_frame
 from rbsdem._package import recorded, unwarned
 from rbsdem._types import Array, ArrayLike, DataFrame
-from rbsdem.checks.limit_states import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError, SolveError, warn
 from rbsdem.measured.specimens import (
@@ -38,9 +37,11 @@ from rbsdem.run.bands import (
     scatter_of_tests,
 )
 from rbsdem.run.bands import band as band_of
-from rbsdem.run.result import Result, cyclic
+from rbsdem.run.column_result import Result
+from rbsdem.run.response import cyclic
 from rbsdem.run.sisters import Learned, Loop, learn
 from rbsdem.section.columns import DEFAULT, model_name
+from rbsdem.section.criteria import WATCHED
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import parameters
 
@@ -115,7 +116,7 @@ class Prediction:
         Where the column is outside the range of the tests that the model was fitted to.
     limit_states : dict of str to float, or None
         Drifts at which limit states are reached, in the order in which they are, by the names of
-        `rbsdem.model.rows.LimitState`; None unless they were asked for.
+        `rbsdem.run.limit_states.LimitState`; None unless they were asked for.
     """
 
     specimen: Specimen

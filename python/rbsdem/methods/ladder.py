@@ -17,10 +17,10 @@ from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, RbsdemError, SolveError
 from rbsdem.model.column import Kinematics, notes_off
-from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.run.accuracy import Answer, answer_of, base_action, common_interval
-from rbsdem.run.result import cyclic, time_history
+from rbsdem.run.accuracy import Answer, answer_of, common_interval
+from rbsdem.run.response import cyclic, time_history
 from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS, Solver
+from rbsdem.section.frame import Frame, Structure, checked_structure
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
 LEAST_ROWS = 200
@@ -235,7 +235,7 @@ class StudyCase:
         load: dict[str, Any] = {name: driven}
         result: Any = cyclic(column, **load, every=every, collapse_drift=self.collapse_drift)
         response = result.force if name == "displacement" else result.displacement
-        histories = [response, base_action(result), result.energy["spring"]]
+        histories = [response, result.base_action, result.energy["spring"]]
         if parts == 0:
             # A point in between lies on the straight line of its leg, at its driven value.
             place, rows = along(path, kept), np.arange(response.size)

@@ -23,11 +23,11 @@ from rbsdem.methods.ladder import (
     study_case,
 )
 from rbsdem.methods.physics import Physics, Reference, find_physics, find_reference
-from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.accuracy import Errors, errors_of
 from rbsdem.run.solver import IMPLICIT, Solver
+from rbsdem.section.frame import Structure
 
 #: Shares of the budget at which the settings, and then the reference, have to be done.
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75

@@ -27,8 +27,8 @@ from rbsdem.model.materials import Concrete, Steel, Ties
 from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Compression, Elastic, Layered, Spring
 from rbsdem.run.analysis import modes
-from rbsdem.run.result import cyclic, pushover, time_history
-from rbsdem.section.building import Frame
+from rbsdem.run.response import cyclic, pushover, time_history
+from rbsdem.section.frame import Frame
 from rbsdem.section.strength import axial_failure_drift, interaction
 
 INCH, FOOT = 0.0254, 0.3048

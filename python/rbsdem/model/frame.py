@@ -3,34 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _core
 from rbsdem._types import Array
-from rbsdem.errors import InputError, warn
-from rbsdem.model.column import NOTES_ON, Column, Damping, checked_column
+from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Landmark, Layered, Spring, layer_springs
+from rbsdem.model.springs import Layered, Spring
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    pass
 
 _PLACES = ("shear", "flexure", "axial_spring")
 #: Words for lines and bays.
 _SIDES = ("outer", "inner")
 _SUPPORTS = ("free", "roller", "pinned", "fixed")
-
-#: Scope of the results of a frame, printed with them.
-SCOPE_NOTE = (
-    "The frame is computed from the properties of its members. Predicted columns carry the error "
-    "that tests gave; beams, nodes and slabs are computed, and no frame was fitted."
-)
 
 
 @dataclass(frozen=True)
@@ -483,492 +476,6 @@ class Span(NamedTuple):
     columns: tuple[int, ...]
 
 
-@dataclass(frozen=True, repr=False)
-class Frame:
-    """A planar frame: a grid of storeys and bays, single nodes and members, or both.
-
-    Nodes of the grid are called N-line-floor (N-2-1: second line of columns, first floor; floor 0
-    is the base), columns C-line-storey, beams B-bay-storey.
-
-    Parameters
-    ----------
-    storeys, bays : sequence of float, optional
-        Heights of the storeys from the ground up and widths of the bays from the left [m]. Without
-        bays there is one line of columns.
-    columns, beams : FrameMember or mapping, optional
-        Kinds of the columns and beams of the grid: one for all, or a mapping from (line, storey) or
-        (bay, storey) to a kind, where the last pair that fits counts: numbers, tuples of them, 0
-        for all, and for lines and bays "outer" or "inner". None: there is no member.
-    floor_mass : float or sequence of float, optional
-        Mass of each floor, shared by its nodes as the widths beside them [kg]. Its weight acts as
-        far as it is given as a load.
-    beam_load : float or sequence of float, optional
-        Dead load on the beams of each floor, downward [N/m].
-    kinematics : {"small", "pdelta"}, optional
-        Small rotations, or the same with the second-order work of the axial forces under the dead
-        load, which do not change along a path.
-    base : {"fixed", "pinned", "free"}, optional
-        How the columns of the grid stand; "free" with springs from the ground.
-    diaphragm : bool, optional
-        Whether all nodes of a floor of the grid move alike along x.
-    pattern : {"triangular", "uniform", "modal", "nodes"}, optional
-        Shares of the lateral load: as mass times height, as mass, as the first mode, adding up to
-        1; or `push_x` and `push_y` of the nodes. Where no mass is given all nodes count alike.
-    control_node, control : str, optional
-        Node and direction ("x" or "y") whose displacement is that of the top; without it the first
-        node of the highest.
-    collapse : {"storey", "roof"}, optional
-        Whose drift `collapse_drift` of an analysis is: the largest of the storeys of the grid, or
-        that of the top over the height.
-    nodes : sequence of FrameNode, optional
-        Nodes, or what nodes of the grid have in addition.
-    members : sequence of Member, optional
-        Members between nodes.
-    damping : Damping or float, optional
-        In proportion to mass and to the stiffness of the members, or ratios of the modes under the
-        dead load; a number is the ratio of all.
-    panel : Spring, optional
-        Rotational spring in every node where columns and beams meet, between them; nodes may have
-        one of their own.
-    losses : mapping of str to float, optional
-        Members that are lost during a response in time, and when [s]: from the next step on they
-        carry nothing. Their dead load stays on their nodes. For a frame that begins without a
-        member see `without`.
-
-    Raises
-    ------
-    InputError
-        With a line for everything that is wrong: the member or node, and the remedy.
-
-    Warns
-    -----
-    AccuracyWarning
-        For lengths that are those of no building, and masses without weight.
-    """
-
-    storeys: ArrayLike | None = None
-    bays: ArrayLike | None = None
-    columns: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None
-    beams: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None
-    floor_mass: ArrayLike = 0.0
-    beam_load: ArrayLike = 0.0
-    kinematics: Literal["small", "pdelta"] = "small"
-    base: Literal["fixed", "pinned", "free"] = "fixed"
-    diaphragm: bool = False
-    pattern: Literal["triangular", "uniform", "modal", "nodes"] = "triangular"
-    control_node: str = ""
-    control: Literal["x", "y"] = "x"
-    collapse: Literal["storey", "roof"] = "storey"
-    nodes: Sequence[FrameNode] = ()
-    members: Sequence[Member] = ()
-    damping: Damping | float | None = None
-    panel: Spring | None = None
-    losses: Mapping[str, float] | None = None
-
-    if TYPE_CHECKING:
-        #: What Fortran has made of it.
-        _made: ClassVar[_core.Made]
-
-    #: Joints of a frame do not open by themselves.
-    opens: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        def put(name: str, value: Any) -> None:
-            object.__setattr__(self, name, value)
-
-        _arguments.convert(self, "frame")
-        for name in ("storeys", "bays"):
-            if getattr(self, name) is not None:
-                given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
-                put(name, tuple(given.tolist()))
-        for name in ("floor_mass", "beam_load"):
-            given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
-            if given.size not in (1, len(self.storeys or ())):  # type: ignore[arg-type]
-                raise InputError(
-                    f"frame: {name} has {given.size} values for "
-                    f"{len(self.storeys or ())} storeys; give one, or one for each"  # type: ignore[arg-type]
-                )
-            # Floors that are alike are stated once, as a case file has them.
-            put(name, tuple(given.tolist() if np.ptp(given) else given[:1].tolist()))
-        for name in ("columns", "beams"):
-            lines = len(self.bays or ()) + (name == "columns")  # type: ignore[arg-type]
-            given = getattr(self, name)
-            cells = cells_of(given, name, _is_member, "a FrameMember", lines)
-            put(name, cells or None)
-        for name, kind in (("nodes", FrameNode), ("members", Member)):
-            items = tuple(_arguments.several(getattr(self, name), f"frame: {name}", name))
-            for item in items:
-                _arguments.instance(item, f"frame: {name}", kind)
-            put(name, items)
-        if self.losses is not None:
-            if not isinstance(self.losses, Mapping):
-                raise InputError(
-                    f"frame: losses = {_arguments.shown(self.losses)} must be a mapping from names "
-                    "of members to times"
-                )
-            losses = self.losses.items()
-            put("losses", {k: _arguments.number(v, "frame: losses") for k, v in losses})
-        if self.damping is not None and not isinstance(self.damping, Damping):
-            put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
-        put("_made", _core.Made(self._state()))
-        for note in self._made.text.splitlines()[3:] if NOTES_ON.get() else ():
-            warn(note)
-
-    def __repr__(self) -> str:
-        grid = f"{len(self.storeys or ())} storeys, {len(self.bays or ())} bays"  # type: ignore[arg-type]
-        parts = self.parts
-        return (
-            f"Frame({grid}, {len(parts.nodes)} nodes, {len(parts.members)} members, "
-            f"kinematics={self.kinematics!r})"
-        )
-
-    @property
-    def _statement(self) -> _core.Statement:
-        """Its keys, as the groups of a case file."""
-        return self._made.statement
-
-    def __hash__(self) -> int:
-        return hash((self._statement.text, *self._statement.numbers))
-
-    @cached_property
-    def parts(self) -> FrameParts:
-        """Nodes, members and springs as they were laid out, with the forces of the dead load."""
-        answer = self._made
-        lines = answer.text.split("\n")[:3]
-        nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in lines)
-        n, m, s = len(nodes), len(members), len(springs)
-        x, y, floor, ends, compression, position, stiffness, mass = np.split(
-            answer.values, np.cumsum([n, n, n, 2 * m, m, s, s])
-        )
-        return FrameParts(
-            nodes,
-            members,
-            x,
-            y,
-            floor.astype(np.int64),
-            ends.reshape(m, 2).astype(np.int64) - 1,
-            compression,
-            tuple(
-                _spring_of(text, float(where), float(k))
-                for text, where, k in zip(springs, position, stiffness, strict=True)
-            ),
-            float(mass[0]),
-        )
-
-    @cached_property
-    def geometry(self) -> dict[str, MemberGeometry]:
-        """Where each member is, by its name, in the order of the columns of a result."""
-        parts, own = self.parts, {member.name: member for member in self.members}
-        nodes, found = np.column_stack((parts.x, parts.y)), {}
-        for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
-            rigid: Any = (own.get(name) or self.kinds[name]).rigid_end
-            if not isinstance(rigid, tuple):
-                foot = name.startswith("C") and name.endswith("-1")
-                rigid = (0.0 if foot else rigid, rigid)
-            length = float(np.hypot(*(nodes[end] - nodes[start])))
-            axis = (nodes[end] - nodes[start]) / length
-            begin = nodes[start] + rigid[0] * axis
-            found[name] = MemberGeometry(
-                name, start, end, axis, rigid, length - sum(rigid), begin, self.load_of(name)
-            )
-        return found
-
-    @cached_property
-    def spans(self) -> list[Span]:
-        """Loaded members that springs bend."""
-        bent: dict[str, list[tuple[FrameSpring, int]]] = {}
-        for column, spring in enumerate(self.parts.springs_of("flexure")):
-            if spring.group == "flexure":
-                bent.setdefault(spring.member, []).append((spring, column))
-        found = []
-        for number, where in enumerate(self.geometry.values()):
-            own = bent.get(where.name, [])
-            own = [pair for pair in own if pair[0].rule == "layered"] or own
-            if own and where.hung:
-                springs, columns = zip(*own, strict=True)
-                found.append(Span(number, where.hung, springs, columns))
-        return found
-
-    @cached_property
-    def supports(self) -> dict[str, str]:
-        """Nodes that are held: "roller", "pinned", "fixed", or "springs" from the ground."""
-        parts = self.parts
-        held: dict[str, str] = {
-            name: self.base for name, i in zip(parts.nodes, parts.floor, strict=True) if i == 0
-        }
-        # Nodes outside of the grid are held by their own supports alone.
-        held |= {node.name: "free" for node in self.nodes if node.floor is not None}
-        for node in self.nodes:
-            how = node.support or held.get(node.name, "free")
-            sprung = any((node.shear, node.axial_spring, node.flexure))
-            held[node.name] = "springs" if how == "free" and sprung else how
-        return {name: how for name, how in held.items() if how != "free"}
-
-    @property
-    def height(self) -> float:
-        """Height from the lowest to the highest node, of a beam alone its length [m]."""
-        return float(np.ptp(self.parts.y) or np.ptp(self.parts.x))
-
-    @cached_property
-    def storey_heights(self) -> tuple[float, ...]:
-        """Heights of the storeys of the grid, or between the floors of nodes [m]; empty without."""
-        parts, given = self.parts, self.storeys
-        floors = range(parts.floor.max(initial=0) + 1)
-        level = [parts.y[parts.floor == i].max() for i in floors] if len(floors) > 1 else [0.0]
-        grid: Any = given if given is not None and len(given) == len(floors) - 1 else None  # type: ignore[arg-type]
-        return tuple(grid or np.diff(level).tolist())
-
-    @property
-    def n(self) -> int:
-        """Number of nodes."""
-        return len(self.parts.nodes)
-
-    @property
-    def joint_numbers(self) -> range:
-        """Numbers of the springs in members, from 1, as limit states know them, layers last."""
-        made = (self.kinds[own.member].at("flexure", own.position) for own in self._joints())
-        layers = sum(len(one.layers) for one in made if isinstance(one, Layered))
-        return range(1, len(self.parts.springs) + layers + 1)
-
-    def _joints(self) -> list[FrameSpring]:
-        return [own for own in self.parts.springs_of("flexure") if own.rule == "layered"]
-
-    @property
-    def damped(self) -> bool:
-        """Whether the frame has viscous damping."""
-        return isinstance(self.damping, Damping) and self.damping.acts
-
-    @cached_property
-    def kinds(self) -> dict[str, FrameMember]:
-        """Kinds of the members by their names, in the order of the columns of a result."""
-        own = {member.name: member.kind for member in self.members}
-        return {name: own.get(name) or self._kind_in_grid(name) for name in self.parts.members}
-
-    def _kind_in_grid(self, member: str) -> FrameMember:
-        letter, line, storey = member.split("-")
-        cells = self.columns if letter == "C" else self.beams
-        found = [
-            kind
-            for (at, level), kind in (cells or {}).items()  # type: ignore[union-attr]
-            if at in (0, int(line)) and level in (0, int(storey))
-        ]
-        kind = found[-1]
-        assert kind is not None, member
-        return kind
-
-    @property
-    def scope_note(self) -> str:
-        """Scope of results of the frame, printed with them."""
-        return SCOPE_NOTE
-
-    @property
-    def infilled(self) -> tuple[Any, ...]:
-        """Infills in their places, `rbsdem.section.infill.InfilledBay`; none without drawings."""
-        return ()
-
-    @cached_property
-    def struts(self) -> dict[str, Any]:
-        """Infills in their places, by the names of their struts."""
-        return {name: bay for bay in self.infilled for name in bay.struts}
-
-    @cached_property
-    def landmarks(self) -> dict[FrameSpring, list[Landmark]]:
-        """Cracking, yield and cap of each spring, first time on the virgin curve."""
-        return {spring: self._landmarks_of(spring) for spring in self.parts.springs}
-
-    def _landmarks_of(self, spring: FrameSpring) -> list[Landmark]:
-        if spring.group == "panel":
-            own = {node.name: node.panel for node in self.nodes}
-            panel = own.get(spring.member) or self.panel
-            return [] if panel is None else panel.landmarks()
-        if spring.member in self.struts:
-            marks: list[Landmark] = self.struts[spring.member].landmarks()
-            return marks
-        kind = self.kinds[spring.member]
-        if kind.yield_moment is not None:
-            if spring.group != "flexure":
-                return []
-            turned = kind.yield_moment / spring.stiffness
-            sides: tuple[Literal[1, -1], ...] = (1, -1)
-            return [Landmark("yield", side, turned, "yield_moment") for side in sides]
-        made = None if spring.rule == "layered" else kind.at(spring.group, spring.position)
-        return [] if made is None else made.landmarks()
-
-    def without(self, *members: str) -> Self:
-        """Return the frame after the loss of members.
-
-        Parameters
-        ----------
-        *members : str
-            Names: C-line-storey, B-bay-storey, or those of `members`.
-
-        Raises
-        ------
-        InputError
-            If there is no such member, or a node is left without one.
-        """
-        cells = {"C": dict(self.columns or {}), "B": dict(self.beams or {})}  # type: ignore[arg-type]
-        own = {member.name: member for member in self.members}
-        for name in members:
-            index_of(name, self.parts.members, "member")
-            if own.pop(name, None) is None:
-                letter, line, storey = name.split("-")
-                cells[letter].pop((int(line), int(storey)), None)
-                cells[letter][int(line), int(storey)] = None
-        columns, beams = (cells[letter] or None for letter in "CB")
-        return replace(self, columns=columns, beams=beams, members=tuple(own.values()))
-
-    @cached_property
-    def named_kinds(self) -> dict[str, FrameMember]:
-        """Kinds of its members by their names in a case file, without their rigid lengths."""
-        cells: Any = self.columns, self.beams
-        kinds = [one for own in cells for one in (own or {}).values() if one]
-        named = _names_of([*kinds, *(member.kind for member in self.members)])
-        return {name: kind for (_, kind), name in named.items()}
-
-    def with_kinds(self, kinds: Mapping[str, FrameMember]) -> Self:
-        """Return the frame with other kinds of members in place of some of `named_kinds`."""
-        names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
-
-        def changed(kind: FrameMember | None) -> FrameMember | None:
-            own = kind and kinds.get(names[_stated(kind)])
-            return with_rigid_end(own, kind.rigid_end) if own and kind else kind
-
-        columns, beams = (
-            {at: changed(kind) for at, kind in own.items()} if own else own  # type: ignore[union-attr]
-            for own in (self.columns, self.beams)
-        )
-        members = tuple(replace(one, kind=changed(one.kind) or one.kind) for one in self.members)
-        return replace(self, columns=columns, beams=beams, members=members)
-
-    def with_axial_failure(self, factor: float) -> Self:
-        """Return the frame whose members lose their axial load at `factor` times the drift.
-
-        A collapse that stands on this drift is told at both ends of its interval,
-        `rbsdem.section.strength.AXIAL_FAILURE_FACTORS`.
-
-        Parameters
-        ----------
-        factor : float
-            Above 0.
-
-        Raises
-        ------
-        InputError
-            If the factor is not above 0, or no member can lose its axial load.
-        """
-        factor = _arguments.number(factor, "with_axial_failure: factor", above=0)
-        kinds = {
-            name: replace(kind, failure_drift=factor * kind.failure_drift)
-            for name, kind in self.named_kinds.items()
-            if kind.failure_drift is not None
-        }
-        if not kinds:
-            raise InputError(
-                "with_axial_failure: no member has a failure_drift; members with axial_load of "
-                "rbsdem.section.member have one"
-            )
-        return self.with_kinds(kinds)
-
-    def load_of(self, member: str) -> float:
-        """Return the dead load on a member, downward, per length along x [N/m]."""
-        for own in self.members:
-            if own.name == member:
-                return own.load
-        if member.startswith("C"):
-            return 0.0
-        loads: Any = self.beam_load
-        return float(loads[min(int(member.split("-")[2]), len(loads)) - 1])
-
-    def to_namelist(self) -> str:
-        """Return the frame as groups of a case file, from which the same frame comes back."""
-        return _core.evaluate("to_namelist", self._statement).text
-
-    def _groups(self) -> _core.Statement:
-        return self._statement
-
-    def _state(
-        self,
-        cells: Sequence[Mapping[tuple[int, int], Any]] = (),
-        drawn: Mapping[Any, dict[str, Any]] | None = None,
-        building: Any = None,
-        **more: Any,
-    ) -> _core.Statement:
-        """Return the groups of a case file; some cells may be drawn, with `more` keys of the grid.
-
-        Of a drawn cell `drawn` has the keys that name its drawings; the floors, nodes and members
-        of a building stand in the place of those that were made of them.
-        """
-        grids: Any = cells or (self.columns or {}, self.beams or {})
-        drawn = drawn or {}
-        kinds = [one for own in grids for one in own.values() if one and one not in drawn]
-        members = self.members if building is None else building.members
-        kinds += [member.kind for member in members]
-        names = _names_of(kinds)
-        usual = {"kinematics": "small", "base": "fixed", "pattern": "triangular", "control": "x"}
-        usual["collapse"] = "storey"
-        grid = {
-            name: getattr(self, name)
-            for name in ("storeys", "bays", "diaphragm", "control_node", *usual)
-        }
-        own_values = {k: v for k, v in grid.items() if v not in (None, False, "", usual.get(k))}
-        parts = [_core.group("frame", own_values | more)]
-        parts += self._floors() if building is None else building.floors()
-        layers: dict[Spring, int] = {}
-        for (_, kind), name in names.items():
-            parts += kind._groups(name, layers)
-        parts.append(layer_springs(layers))
-        keys: dict[Any, dict[str, Any]] = {None: {"kind": _core.Text("none")}, **drawn}
-
-        def keys_of(cell: Any) -> dict[str, Any]:
-            if not isinstance(cell, FrameMember):
-                return keys[cell]
-            return {"kind": _core.Text(names[_stated(cell)])} | _rigid_lengths(cell.rigid_end)
-
-        for group, at, own_cells in zip(
-            ("column_of", "beam_of"), ("line", "bay"), grids, strict=True
-        ):
-            for (line, storey), cell in own_cells.items():
-                where = {at: line or None, "storey": storey or None}
-                parts.append(_core.group(group, where | keys_of(cell)))
-        for node in self.nodes if building is None else building.nodes:
-            parts += node._groups()
-        parts += [member._group(names[_stated(member.kind)]) for member in members]
-        parts += self._lost()
-        if self.panel is not None:
-            parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
-        if isinstance(self.damping, Damping):
-            parts.append(self.damping.statement())
-        return _core.joined(parts)
-
-    def _lost(self) -> list[_core.Statement]:
-        """Return the groups of members that are lost."""
-        return [
-            _core.group("loss", {"member": _core.Text(member), "time": time})
-            for member, time in (self.losses or {}).items()
-        ]
-
-    def _floors(self) -> Iterator[_core.Statement]:
-        masses, loads = self.floor_mass, self.beam_load
-        count = max(len(masses), len(loads))  # type: ignore[arg-type]
-        for i in range(count):
-            mass = masses[min(i, len(masses) - 1)]  # type: ignore[arg-type, index]
-            load = loads[min(i, len(loads) - 1)]  # type: ignore[arg-type, index]
-            if mass or load:
-                floor = None if count == 1 else i + 1
-                values = {"floor": floor, "mass": mass or None, "dead_load": load or None}
-                yield _core.group("floor", values)
-
-
-def _spring_of(text: str, position: float, stiffness: float) -> FrameSpring:
-    member, group, rule = text.rsplit(" ", 2)
-    return FrameSpring(member, group, rule, position, stiffness)
-
-
-def _is_member(cell: object) -> bool:
-    return isinstance(cell, FrameMember)
-
-
 def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
     """Return the places of a grid that a pair names: line or bay, and storey or floor, 0 for all.
 
@@ -1020,15 +527,6 @@ def cells_of(
     return found
 
 
-#: Structures that analyses take.
-Structure = Column | Frame
-
-
-def checked_structure(structure: object, who: str = "") -> Structure:
-    """Return a column or a frame, or raise `InputError` with what makes one."""
-    return structure if isinstance(structure, Frame) else checked_column(structure, who)
-
-
 def index_of(name: str, names: tuple[str, ...], what: str) -> int:
     """Return the number of a node or member, from 0."""
     if name not in names:
@@ -1046,13 +544,14 @@ def index_of(name: str, names: tuple[str, ...], what: str) -> int:
 NamedKind = tuple[str, FrameMember]
 
 
-def _stated(kind: FrameMember) -> NamedKind:
+def stated(kind: FrameMember) -> NamedKind:
+    """Return a kind of members as a case file has it."""
     return kind.name, with_rigid_end(kind, 0.0)
 
 
-def _names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
+def names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
     """Return the names of kinds of members, made up where there is none."""
-    given = dict.fromkeys(map(_stated, kinds))
+    given = dict.fromkeys(map(stated, kinds))
     names: dict[NamedKind, str] = {}
     taken = {name for name, _ in given}
     for name, own in given:
@@ -1062,7 +561,8 @@ def _names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
     return names
 
 
-def _rigid_lengths(rigid_end: float | tuple[float, float]) -> dict[str, float | None]:
+def rigid_lengths(rigid_end: float | tuple[float, float]) -> dict[str, float | None]:
+    """Return the keys of rigid lengths in nodes."""
     if isinstance(rigid_end, tuple):
         return {"rigid_from": rigid_end[0], "rigid_to": rigid_end[1]}
     return {"rigid_end": rigid_end or None}

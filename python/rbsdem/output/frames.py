@@ -13,8 +13,7 @@ from rbsdem._types import Array, NDArray
 from rbsdem.checks.acceptance import Assessment
 from rbsdem.errors import InputError
 from rbsdem.many.target import Target
-from rbsdem.model.frame import Frame, MemberGeometry
-from rbsdem.model.frame_result import FAILS, FrameResult
+from rbsdem.model.frame import MemberGeometry
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -24,6 +23,8 @@ from rbsdem.output.style import (
     line_of,
 )
 from rbsdem.run.analysis import FrameModes
+from rbsdem.run.frame_result import FAILS, FrameResult
+from rbsdem.section.frame import Frame
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

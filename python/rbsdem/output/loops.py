@@ -17,7 +17,6 @@ from rbsdem.curves.metrics import Curve, loop_pair
 from rbsdem.curves.scores import Comparison
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
-from rbsdem.model.rows import ENERGIES, LimitStates, Response
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -33,6 +32,9 @@ from rbsdem.output.style import (
     style,
     style_of,
 )
+from rbsdem.run.column_result import Result
+from rbsdem.run.limit_states import LimitStates
+from rbsdem.run.rows import ENERGIES
 
 FIGURE_SIZE = (6.9, 6.0)
 
@@ -121,7 +123,7 @@ def loop(
     >>> ax.get_xlabel()
     'Top displacement (mm)'
     """
-    shaken = force is None and isinstance(curve, Response) and curve.dynamic
+    shaken = force is None and isinstance(curve, Result) and curve.dynamic
     d, f = _curve((curve, force) if force is not None else curve, "the loop")
     with axes_or_new(ax) as drawn:
         drawn.plot(d, f, **line_of(MODEL_LINE, line))
@@ -476,7 +478,7 @@ _ENERGY_LABELS = {
 
 
 def history(
-    result: Response, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
+    result: Result, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
 ) -> Axes:
     """Draw a response over time, or over the points of a static path.
 
@@ -501,7 +503,7 @@ def history(
     InputError
         If `over` is none of these.
     """
-    _arguments.instance(result, "history: result", Response)
+    _arguments.instance(result, "history: result", Result)
     over = _arguments.choice(over, "over", _OVER)
     factor, label = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
@@ -512,14 +514,14 @@ def history(
     return drawn
 
 
-def _along(result: Response, ax: Axes, label: str) -> None:
+def _along(result: Result, ax: Axes, label: str) -> None:
     """Dress axes whose x is the time, or the points of a path."""
     ax.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
     ax.set(xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel=label)
     ax.tick_params(right=True, top=True)
 
 
-def energy(result: Response, *, ax: Axes | None = None) -> Axes:
+def energy(result: Result, *, ax: Axes | None = None) -> Axes:
     """Draw the energies of a response over time; those that stay zero are left out.
 
     Parameters
@@ -546,7 +548,7 @@ def energy(result: Response, *, ax: Axes | None = None) -> Axes:
 
 
 def profile(
-    result: Response,
+    result: Result,
     time: ArrayLike | None = None,
     *,
     axes: Sequence[Axes] | AxesArray | None = None,
@@ -607,7 +609,7 @@ def profile(
     return np.asarray(axes)
 
 
-def _lengths(result: Response) -> Array:
+def _lengths(result: Result) -> Array:
     column = result.column
     lengths, *_ = bodies(column)
     beneath = () if column.footing is None else (column.footing.height,)

@@ -8,10 +8,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from rbsdem._types import Array, ArrayLike, Axes
-from rbsdem.checks.limit_states import buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
-from rbsdem.model.rows import Response
 from rbsdem.model.shape import Section
 from rbsdem.output.style import (
     MODEL_LINE,
@@ -26,7 +24,9 @@ from rbsdem.output.style import (
     style,
     style_of,
 )
+from rbsdem.run.column_result import Result
 from rbsdem.section import shear
+from rbsdem.section.criteria import buckling_strain
 from rbsdem.section.curvature import Diagram, Events, strains
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.paper import SectionSprings
@@ -339,7 +339,7 @@ def _outline(diagram: InteractionDiagram, axial: str, moment: str) -> tuple[Arra
 
 
 def section_state(
-    result: Response, time: float, *, axes: Sequence[Axes] | AxesArray | None = None
+    result: Result, time: float, *, axes: Sequence[Axes] | AxesArray | None = None
 ) -> AxesArray:
     """Draw the hinge's section with its layers by state, and the strains over its depth.
 

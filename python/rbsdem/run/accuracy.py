@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+import sys
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from rbsdem._package import unwarned
 from rbsdem._types import Array
-from rbsdem.model.rows import Response, Rows
+from rbsdem.run.solve import follow, march
+from rbsdem.run.solver import METHODS
+
+#: By how much a tolerance is sharpened, at least to where it and not the stability limits the
+#: steps, and the least one.
+_SHARPER, _SHARP, _LEAST = 100.0, 1e-9, 1e-13
+
+#: Tolerance by default.
+_USUAL_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -143,12 +155,7 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
     return result
 
 
-def base_action(run: Rows) -> Array:
-    """Return the compared action at the base: the moment of a column, the shear of a frame."""
-    return run.moment[:, 0] if isinstance(run, Response) else run.base_shear
-
-
-def answer_of(run: Rows, times: Array, driven: bool = False, parts: int = 1) -> Answer:
+def answer_of(run: Any, times: Array, driven: bool = False, parts: int = 1) -> Answer:
     """Return the compared part of a result at some times.
 
     `driven`: by displacement. `parts`: increments of a static path for each one between the times.
@@ -156,7 +163,7 @@ def answer_of(run: Rows, times: Array, driven: bool = False, parts: int = 1) -> 
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]
-    histories = [np.array(values) for values in (response, base_action(run), taken)]
+    histories = [np.array(values) for values in (response, run.base_action, taken)]
     if not run.dynamic:
         # Rows of corners and of the start stand between the points of the path.
         wanted = parts * (times + 1) - 1
@@ -171,3 +178,114 @@ def answer_of(run: Rows, times: Array, driven: bool = False, parts: int = 1) -> 
     about = run.summary
     reason = f"{about['method']}: {about['reason']}" if about.get("reason") else ""
     return Answer(time, response, moment, taken, about.get("status", "completed"), reason)
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Known errors of one result.
+
+    Attributes
+    ----------
+    method : str
+        The method that was used.
+    measured : float
+        The largest of `Result.refined_error`, where that run is short; NaN where it is not, and for
+        a static path.
+    usual, largest : float
+        Error of the method at its own step or tolerance, relative to the peaks: median and largest
+        of the responses of ``studies/error_classes.py``, which say little of another one. 0 for a
+        static path, which is exact but for round-off.
+    responses : int
+        How many responses those were.
+    own_setting : bool
+        Whether the result has this step or tolerance; else a setting of the user.
+    energy : float
+        Error of the energy balance of this result, over its largest energy. It is no
+        measure of the response, which may err by much more.
+    """
+
+    method: str
+    measured: float
+    usual: float
+    largest: float
+    responses: int
+    own_setting: bool
+    energy: float
+
+    def __str__(self) -> str:
+        if not self.usual > 0:
+            return f"{self.method}: exact but for round-off"
+        at = "" if self.own_setting else " at its own setting, which this is not"
+        tried = (
+            f"{self.usual:g} in the median of {self.responses} other responses, "
+            f"{self.largest:g} at most{at}"
+        )
+        if math.isnan(self.measured):
+            return f"{self.method}: errors over the peaks: {tried}; refined_error() measures it"
+        return (
+            f"{self.method}: error about {self.measured:.1g} of the peaks, by a finer run ({tried})"
+        )
+
+
+def refined_error(result: Any) -> Errors:
+    """Return the differences of a result from that of the next finer setting."""
+    with unwarned():
+        # They were told with the result itself.
+        if result.dynamic:
+            run, _ = march(result.structure, _finer(result))
+        else:
+            run = follow(result.structure, _divided(result))
+    arrays, _, summary, error, _ = run
+    if error is not None:
+        raise error
+    finer = replace(
+        result, channels=arrays, summary=summary | {"analysis": result.summary["analysis"]}
+    )
+    driven = "displacement" in result.call
+    points = result.time
+    if not result.dynamic:
+        points = points[(points >= 0) & (points == np.floor(points))]
+    one = answer_of(result, points, driven)
+    other = answer_of(finer, points, driven, 1 if result.dynamic else 2)
+    found = asdict(errors_of(one, other))
+    # Two runs with the same digits say no more than that the error is within their last ones.
+    least = math.sqrt(one.time.size) * sys.float_info.epsilon
+    return Errors(**{name: max(error, least) for name, error in found.items()})
+
+
+def _finer(result: Any) -> dict[str, Any]:
+    """Return the keywords of `time_history` for the next finer setting."""
+    call, about = dict(result.call), result.summary
+    method = METHODS[about["method"]]
+    if call.get("method", "auto") == "auto":
+        call.pop("tolerance", None)
+        if method.name == "rk4" and "events located" in about["reason"]:
+            call["events"] = "located"
+        if method.adaptive and "tolerance" in result.call:
+            call["tolerance"] = result.call["tolerance"]
+    call["method"] = method.name
+    if method.adaptive:
+        tolerance = call.get("tolerance", _USUAL_TOLERANCE)
+        sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
+        # Where there is none that is much sharper, the distance to one that is not bounds it.
+        return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
+    if "every" in call:
+        call["every"] *= 2
+    if "dt" in call:
+        return call | {"dt": call["dt"] / 2}
+    # Rows stay at the times of the loading if the step divides all intervals.
+    interval, regular = common_interval(call["time"])
+    step = about["time_step"]
+    parts = 2 * max(math.ceil(interval / step * (1 - 1e-9)), 1)
+    return call | {"dt": interval / parts if regular else step / 2}
+
+
+def _divided(result: Any) -> dict[str, Any]:
+    """Return the keywords of `cyclic` with each increment cut in two."""
+    call = dict(result.call)
+    name = "displacement" if "displacement" in call else "force"
+    path = np.concatenate([[0.0], call[name]])
+    fine = np.repeat(call[name], 2)
+    fine[::2] = 0.5 * (path[:-1] + path[1:])
+    # From the middle of the first increment, every second point is one of the path.
+    return call | {name: fine}

@@ -12,7 +12,7 @@ from rbsdem._files import Tabular, text_table
 from rbsdem._types import Array
 from rbsdem.errors import warn
 from rbsdem.model.column import Column
-from rbsdem.model.frame import Frame, Structure, checked_structure
+from rbsdem.section.frame import Frame, Structure, checked_structure
 
 
 @dataclass(frozen=True)

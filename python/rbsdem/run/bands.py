@@ -30,7 +30,7 @@ from rbsdem.curves.metrics import PathPoints, work
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
-from rbsdem.run.result import reached_force
+from rbsdem.run.response import reached_force
 from rbsdem.section.curvature import RANGE
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION

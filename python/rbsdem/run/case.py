@@ -18,16 +18,18 @@ from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import SPRING_GROUPS, Column, Damping, Footing, notes_off
-from rbsdem.model.frame import Frame, Structure
-from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, Rows, check_ending, same
+from rbsdem.run.column_result import Result
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.groups import (
     drawing_of,
     frame_of,
     layered_column,
     springs_of_joints,
 )
-from rbsdem.run.result import FrameResult, Result, cyclic, time_history
+from rbsdem.run.response import cyclic, time_history
+from rbsdem.run.rows import FORMAT, FORMAT_VERSION, SAVED, Rows, check_ending, same
 from rbsdem.run.solver import Solver
+from rbsdem.section.frame import Frame, Structure
 
 #: Arguments of analyses that no case file has.
 _NO_SETTINGS = ("initial", "corners", "progress")

@@ -14,7 +14,7 @@ from rbsdem.model.materials import Bars, Concrete, Lap, Layout, Spiral, Steel, T
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
-from rbsdem.section.building import Frame
+from rbsdem.section.frame import Frame
 from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters

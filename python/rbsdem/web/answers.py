@@ -27,14 +27,14 @@ from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.predict import Prediction, nearest, predict
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion
 from rbsdem.output.section import hoop_lines
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.case import Case
-from rbsdem.run.result import Result
+from rbsdem.run.column_result import Result
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import InteractionDiagram, interaction

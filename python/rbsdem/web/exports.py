@@ -21,10 +21,10 @@ from typing import Any
 from rbsdem._arguments import Derived
 from rbsdem._package import unwarned
 from rbsdem.errors import InputError
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.springs import Spring
 from rbsdem.run.case import Case, case_of, case_of_text
-from rbsdem.run.result import Result
+from rbsdem.run.column_result import Result
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.web import frames
 from rbsdem.web.state import Drawn, Faults, RefusedError, drawn_case, state_of

@@ -21,15 +21,15 @@ from rbsdem._types import Array
 from rbsdem.checks.acceptance import AcceptanceCode, Assessment, assess
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.many.target import Target, target
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.output.frames import deformed, spring_rotations
 from rbsdem.run.analysis import modes
-from rbsdem.run.result import cyclic, pushover, time_history
+from rbsdem.run.frame_result import FrameResult
+from rbsdem.run.response import cyclic, pushover, time_history
 from rbsdem.run.solver import COLLAPSE_DRIFT
-from rbsdem.section.building import Frame
+from rbsdem.section.frame import Frame
 from rbsdem.web.state import (
     Faults,
     group,

@@ -30,8 +30,6 @@ from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
 from rbsdem.many.target import Target
 from rbsdem.measured.specimens import Specimens
-from rbsdem.model.frame import SCOPE_NOTE, Frame, Structure
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.output import frames, many, section
 from rbsdem.output.loops import history
@@ -39,8 +37,10 @@ from rbsdem.output.style import style
 from rbsdem.output.tables import PAPER, cells
 from rbsdem.run.analysis import modes
 from rbsdem.run.case import Case, case_of
-from rbsdem.run.result import Result
+from rbsdem.run.column_result import Result
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram
+from rbsdem.section.frame import SCOPE_NOTE, Frame, Structure
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import Code, interaction
 from rbsdem.web.answers import Answered, Answers

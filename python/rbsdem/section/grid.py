@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import count
 from typing import Any, Literal
 
@@ -12,18 +12,15 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
-from rbsdem._types import Array, ArrayLike
+from rbsdem._types import Array
 from rbsdem.errors import InputError, warn
-from rbsdem.model import frame as model
-from rbsdem.model.column import NOTES_ON
-from rbsdem.model.frame import FrameMember, FrameNode, Member
+from rbsdem.model.frame import FrameMember, FrameNode, Member, cells_of, places_of, with_rigid_end
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
 from rbsdem.model.wall import WallSection
 from rbsdem.section.columns import member, plastic_moments
-from rbsdem.section.infill import INFILL_NOTE, Infill, InfilledBay
+from rbsdem.section.infill import Infill, InfilledBay
 from rbsdem.section.panel import JointPanel, PanelClass, rigid_ends
-from rbsdem.section.parameters import VERSION
 from rbsdem.section.spans import Pair, line_spans
 from rbsdem.section.walls import wall_members
 
@@ -44,7 +41,7 @@ _MORE_BELOW = 1.25
 
 
 @dataclass(frozen=True)
-class Building:
+class FrameDrawing:
     """What a frame was drawn from: sections, loads, and the rules of its nodes.
 
     Attributes
@@ -116,209 +113,7 @@ class Building:
             yield _core.group("node_load", place | {"load": load})
 
 
-@dataclass(frozen=True, repr=False)
-class Frame(model.Frame):
-    """A planar frame that knows what it was drawn from."""
-
-    building: Building | None = field(default=None, compare=False)
-
-    @classmethod
-    def grid(
-        cls,
-        storeys: ArrayLike,
-        bays: ArrayLike | None = None,
-        *,
-        columns: Cells,
-        beams: Cells | None = None,
-        ends: float | Literal["asce"] | None = None,
-        panel_hoops: Ties | Literal["none"] | None = None,
-        dead_load: ArrayLike = 0.0,
-        live_load: ArrayLike = 0.0,
-        live_share: float = 0.3,
-        node_load: float | Mapping[tuple[int, int], float] = 0.0,
-        self_weight: bool = False,
-        mass: Literal["from_loads"] | None = None,
-        infills: Infill | Mapping[tuple[int, int], Infill | None] | None = None,
-        walls: Mapping[int, WallSection | Sequence[WallSection]] | None = None,
-        wall_spans: ArrayLike | Mapping[int, float] | None = None,
-        **more: Any,
-    ) -> Frame:
-        """Return a frame of storeys and bays, from kinds of members or from their sections.
-
-        Members of sections are layered ones (`rbsdem.section.member`) between the faces of the
-        rigid ends; columns stand under the axial load of the elastic frame, rounded to 1 % of f'c
-        A_g. Equal members are made once.
-
-        Parameters
-        ----------
-        storeys, bays : sequence of float
-            Heights and widths between axes [m].
-        columns, beams : Section, pair of Section, FrameMember, or mapping
-            One for all, or by (line, storey) or (bay, storey), where the last that fits counts:
-            numbers, tuples of them, 0 for all, "outer" or "inner": ``{("outer", 1): c1, ("inner",
-            (1, 2)): c2}``. None: there is no member. A pair are the sections of the two halves.
-            y > 0 of a section is up in a beam, on the left in a column.
-        ends : float or "asce", optional
-            Part of a node that is rigid in columns and beams, or the rule of ASCE 41-17, 10.4.2.2.1
-            (`rbsdem.section.rigid_ends`); by default that rule, and 1 with springs in the nodes.
-        panel_hoops : Ties or "none", optional
-            Springs in the panels of the nodes (`rbsdem.frames.JointPanel`) with these hoops, or
-            without hoops; None: the nodes are rigid.
-        dead_load, live_load : float or sequence of float, optional
-            On the beams of all floors, or of each [N/m].
-        live_share : float, optional
-            Part of the live load that acts.
-        node_load : float or mapping, optional
-            Weights of walls and facades on the nodes of floors: of the outer lines, or by (line,
-            floor) as the columns; the last that fits counts [N].
-        self_weight : bool, optional
-            Whether members of sections have their own weight, 25 kN/m3.
-        mass : "from_loads", optional
-            Floor masses are those of the loads; given `floor_mass` that differ from them by more
-            than 5 % are told.
-        walls : mapping, optional
-            Lines that are walls, with a section for all storeys or one for each, from the ground
-            up. Their members have the springs of the whole wall (`rbsdem.section.wall_members`),
-            and beams reach their faces by rigid arms.
-        wall_spans : float, sequence or mapping, optional
-            M/V at the foot of walls, for which their springs are made, of all or by line [m]; by
-            default where the beams yield and the wall at its foot under the lateral load of the
-            pattern. A run tells where it is another.
-        infills : Infill or mapping, optional
-            Masonry between columns and beams: one for all bays and storeys, or by (bay, storey), 0
-            for all, where the last that fits counts; None: there is none.
-        **more
-            Other parameters of `Frame`; `beam_load` adds to the loads above.
-
-        Raises
-        ------
-        InputError
-            With what is wrong and where.
-        """
-        heights = tuple(_arguments.vector(storeys, "frame: storeys", shape="1 or m").tolist())
-        widths: tuple[float, ...] = ()
-        if bays is not None:
-            widths = tuple(_arguments.vector(bays, "frame: bays", shape="1 or m").tolist())
-        if mass is not None:
-            _arguments.choice(mass, "frame: mass", ("from_loads",))
-        lines = len(widths) + 1
-        upright = _cells(columns, "columns", lines) | _walls(walls, lines, len(heights))
-        grid = _Grid(heights, widths, upright, _cells(beams, "beams", lines - 1))
-        given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
-        for node in given:
-            _arguments.instance(node, "frame: nodes", FrameNode)
-        dead = np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load"))
-        dead = dead + grid.floors(dead_load, "dead_load")
-        building = Building(
-            grid.given[0],
-            grid.given[1],
-            ends if ends is not None else "asce" if panel_hoops is None else 1.0,
-            panel_hoops,
-            model.cells_of(
-                infills, "infills", lambda one: isinstance(one, Infill), "an Infill", lines - 1
-            ),
-            tuple(dead.tolist()),
-            grid.floors(live_load, "live_load"),
-            _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0),
-            _node_loads(node_load, lines),
-            _arguments.boolean(self_weight, "frame: self_weight"),
-            mass,
-            more.pop("floor_mass", None),
-            given,
-            tuple(more.get("members", ())),
-            _spans_of_walls(wall_spans, lines),
-        )
-        grid.check_places("node_load", building.node_load, lines)
-        more |= grid.loads(building)
-        drawn = any(building.infills.values()) or any(map(_is_drawn, grid.all_cells()))
-        if not drawn:
-            cells = building.columns, building.beams or None
-            return cls(heights, widths or None, *cells, **more)
-        members = grid.members(cls, building, more)
-        if NOTES_ON.get():
-            grid.note_on_bars(more["beam_load"])
-        nodes = {node.name: node for node in more["nodes"]}
-        for name, panel in grid.panels(building).items():
-            own = nodes.get(name, FrameNode(name))
-            nodes[name] = own if own.panel is not None else replace(own, panel=panel)
-        more["nodes"] = tuple(nodes.values())
-        struts = [strut for one in grid.infilled(building.infills) for strut in one.members()]
-        more["members"] = (*building.members, *struts)
-        frame = cls(heights, widths or None, members[0], members[1] or None, **more)
-        object.__setattr__(frame, "building", replace(building, made=frame._statement))
-        return frame
-
-    @cached_property
-    def infilled(self) -> tuple[InfilledBay, ...]:
-        """Infills in their places, whose struts are members."""
-        if self.building is None or not self.building.infills:
-            return ()
-        storeys: Any = self.storeys
-        bays: Any = self.bays
-        grid = _Grid(storeys, bays, self.building.columns, self.building.beams)
-        own = {member.name for member in self.members}
-        return tuple(
-            one for one in grid.infilled(self.building.infills) if own.issuperset(one.struts)
-        )
-
-    @property
-    def scope_note(self) -> str:
-        """Scope of results of the frame, printed with them."""
-        return f"{super().scope_note} {INFILL_NOTE}" if self.infilled else super().scope_note
-
-    def to_namelist(self, *, springs: bool = False) -> str:
-        """Return the frame as groups of a case file, from which the same frame comes back.
-
-        Parameters
-        ----------
-        springs : bool, optional
-            Whether members that were drawn are written with all their springs, as the executable
-            takes them; else by their sections, of which `rbsdem.read_case` makes them again.
-        """
-        statement = self._statement if springs else self._groups()
-        return _core.evaluate("to_namelist", statement).text
-
-    def _groups(self) -> _core.Statement:
-        """Return the groups of a case file, with drawings in place of springs where that is all."""
-        building = self.building
-        if building is None or building.made != self._statement:
-            # Not drawn, or changed since, as by `without`.
-            return self._statement
-        cells = building.columns, building.beams
-        drawings: dict[Section, str] = {}
-        taken = {one.name for own in cells for one in own.values() if isinstance(one, FrameMember)}
-
-        def name_of(section: Section) -> _core.Text:
-            names = (f"section-{i}" for i in count(1))
-            free = (name for name in names if name not in {*taken, *drawings.values()})
-            return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))
-
-        drawn: dict[Any, dict[str, Any]] = {}
-        for one in [one for own in cells for one in own.values() if _is_drawn(one)]:
-            start, end = _halves(one)
-            drawn[one] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
-        hoops: Any = building.panel_hoops
-        if isinstance(hoops, Ties):
-            # A drawing with these hoops; no member may be of it.
-            like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
-            hoops = name_of(next((one for one in drawings if one.ties == hoops), like))
-        more = {
-            "panel_hoops": hoops,
-            "ends": building.ends if building.ends != "asce" else None,
-            "live_share": building.live_share if any(building.live_load) else None,
-            "self_weight": building.self_weight or None,
-            "mass": building.mass,
-            "wall_spans": building.wall_spans or None,
-        }
-        statement = self._state(cells, drawn, building, **more)
-        statement += _infill_groups(building.infills)
-        for section, name in drawings.items():
-            about = {"name": _core.Text(name), "version": _core.Text(VERSION)}
-            statement += _core.group("drawing", about) + section.drawing()
-        return statement
-
-
-def _infill_groups(cells: Mapping[tuple[int, int], Infill | None]) -> _core.Statement:
+def infill_groups(cells: Mapping[tuple[int, int], Infill | None]) -> _core.Statement:
     """Return the groups of infills and of their places."""
     infills = list(dict.fromkeys(one for one in cells.values() if one is not None))
     taken = {one.name for one in infills}
@@ -335,14 +130,6 @@ def _infill_groups(cells: Mapping[tuple[int, int], Infill | None]) -> _core.Stat
         kind = _core.Text(names.get(cell, "none"))
         parts.append(_core.group("infill_of", where | {"kind": kind}))
     return _core.joined(parts)
-
-
-# With the parameters of the frame that it extends.
-Frame.__doc__ = str(model.Frame.__doc__).replace(
-    "\n\n    Raises\n",
-    "\n    building : Building, optional\n        What it was drawn from; `grid` gives it.\n\n"
-    "    Raises\n",
-)
 
 
 def _masses(given: Any, floors: Array, mass: str | None) -> dict[str, Any]:
@@ -364,10 +151,10 @@ def _masses(given: Any, floors: Array, mass: str | None) -> dict[str, Any]:
     return {"floor_mass": given}
 
 
-def _cells(given: Any, name: str, lines: int) -> dict[tuple[int, int], Any]:
+def cells_of_sections(given: Any, name: str, lines: int) -> dict[tuple[int, int], Any]:
     """Return the cells of a grid; halves are a tuple."""
     kinds = "a Section, a pair of them, a FrameMember"
-    cells = model.cells_of(given, name, _is_cell, kinds, lines)
+    cells = cells_of(given, name, _is_cell, kinds, lines)
     return {at: tuple(one) if isinstance(one, list) else one for at, one in cells.items()}
 
 
@@ -376,7 +163,7 @@ def _is_cell(one: Any) -> bool:
     return isinstance(one, FrameMember) or all(isinstance(part, Section) for part in halves)
 
 
-def _walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSection]:
+def cells_of_walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSection]:
     """Return the sections of lines that are walls, by line and storey, 0 for all."""
     found: dict[tuple[int, int], WallSection] = {}
     for line, one in (given or {}).items():
@@ -394,7 +181,7 @@ def _walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSe
     return found
 
 
-def _spans_of_walls(given: Any, lines: int) -> tuple[float, ...]:
+def spans_of_walls(given: Any, lines: int) -> tuple[float, ...]:
     """Return M/V of walls, one for all lines or one for each; 0 where it is not given."""
     if given is None:
         return ()
@@ -413,16 +200,17 @@ def _spans_of_walls(given: Any, lines: int) -> tuple[float, ...]:
     return tuple(spans)
 
 
-def _node_loads(given: Any, lines: int) -> dict[tuple[int, int], float]:
+def loads_of_nodes(given: Any, lines: int) -> dict[tuple[int, int], float]:
+    """Return weights on the nodes of floors by line and floor, 0 for all."""
     rules = given if isinstance(given, Mapping) else {("outer", 0): given} if given else {}
     return {
         place: _arguments.number(load, "frame: node_load")
         for pair, load in rules.items()
-        for place in model.places_of(pair, "node_load", lines)
+        for place in places_of(pair, "node_load", lines)
     }
 
 
-class _Grid:
+class Grid:
     """Places of a grid and what stands in them."""
 
     def __init__(
@@ -452,6 +240,7 @@ class _Grid:
                     )
 
     def all_cells(self) -> list[Any]:
+        """Return what stands in the places where there is a member."""
         return [one for one in (*self.columns.values(), *self.beams.values()) if one is not None]
 
     def floors(self, given: Any, name: str) -> tuple[float, ...]:
@@ -464,14 +253,14 @@ class _Grid:
             )
         return tuple(np.broadcast_to(values, len(self.storeys)).tolist())
 
-    def loads(self, building: Building) -> dict[str, Any]:
+    def loads(self, drawing: FrameDrawing) -> dict[str, Any]:
         """Return loads of beams, loads of nodes and masses of floors, as arguments of a frame."""
-        loads = np.array(building.dead_load)
-        loads = loads + building.live_share * np.array(building.live_load)
-        if building.self_weight:
+        loads = np.array(drawing.dead_load)
+        loads = loads + drawing.live_share * np.array(drawing.live_load)
+        if drawing.self_weight:
             loads = loads + self.weights_of_beams()
-        nodes = {node.name: node for node in building.nodes}
-        for name, weight in self.weights(building.node_load, building.self_weight).items():
+        nodes = {node.name: node for node in drawing.nodes}
+        for name, weight in self.weights(drawing.node_load, drawing.self_weight).items():
             node = nodes.get(name, FrameNode(name))
             nodes[name] = replace(node, load_y=node.load_y - weight)
         floors = loads * sum(self.bays) / STANDARD_GRAVITY
@@ -479,7 +268,7 @@ class _Grid:
             if (loaded := nodes.get(f"N-{i}-{k}")) is not None:
                 floors[k - 1] -= loaded.load_y / STANDARD_GRAVITY
         more: dict[str, Any] = {"beam_load": loads if len(set(loads.tolist())) > 1 else loads[:1]}
-        more |= _masses(building.floor_mass, floors, building.mass)
+        more |= _masses(drawing.floor_mass, floors, drawing.mass)
         return more | {"nodes": tuple(nodes.values())}
 
     def weights_of_beams(self) -> Array:
@@ -506,13 +295,13 @@ class _Grid:
                 found[f"N-{i}-{k}"] = weight
         return found
 
-    def members(self, cls: type[Frame], building: Building, more: dict[str, Any]) -> list[Any]:
+    def members(self, cls: Any, drawing: FrameDrawing, more: dict[str, Any]) -> list[Any]:
         """Return the kinds of all columns and beams."""
         elastic = [
             {at: _elastic_kind(one) for at, one in cells.items()}
             for cells in (self.columns, self.beams)
         ]
-        given = {key: value for key, value in more.items() if key not in ("losses", "building")}
+        given = {key: value for key, value in more.items() if key != "losses"}
         standing = cls(
             self.storeys, self.bays or None, elastic[0], elastic[1] or None,
             **given | {"kinematics": "small", "panel": None, "damping": None},
@@ -523,7 +312,7 @@ class _Grid:
             for at in self.columns
         }
         rigid = {
-            (i, k): self._ends(building, load, i, k)
+            (i, k): self._ends(drawing, load, i, k)
             for k in range(1, len(self.storeys) + 1)
             for i in range(1, len(self.bays) + 2)
         }
@@ -537,7 +326,7 @@ class _Grid:
             "beams": {(i, k): (rigid[i, k][1], rigid[i + 1, k][1]) for i, k in self.beams},
         }
         spans = self._spans_of_columns(load, ends["columns"], more)
-        walls = self._wall_members(load, spans, building.wall_spans)
+        walls = self._wall_members(load, spans, drawing.wall_spans)
         for (i, k), one in self.columns.items():
             if (i, k) in walls:
                 columns[i, k] = walls[i, k]
@@ -553,9 +342,9 @@ class _Grid:
         """Tell of loaded beams with more bars below than above at their ends, which hog."""
         loads, found = np.broadcast_to(beam_load, len(self.storeys)), []
         for (i, k), one in self.beams.items():
-            if not (_is_drawn(one) and loads[k - 1] > 0.0):
+            if not (is_drawn(one) and loads[k - 1] > 0.0):
                 continue
-            for part in _halves(one):
+            for part in halves_of(one):
                 if part.mirrored.tension_steel > _MORE_BELOW * part.tension_steel:
                     found.append(f"B-{i}-{k}")
         if found:
@@ -582,8 +371,8 @@ class _Grid:
         for i in range(1, len(self.bays) + 2):
             line = [self.columns[i, k] for k in levels]
             beams = [self.around(i, k)[1] for k in levels]
-            if not all(map(_is_drawn, line)) or not all(
-                one is None or _is_drawn(one) for pair in beams for one in pair
+            if not all(map(is_drawn, line)) or not all(
+                one is None or is_drawn(one) for pair in beams for one in pair
             ):
                 continue
             clear = [self.storeys[k - 1] - sum(ends[i, k]) for k in levels]
@@ -591,12 +380,12 @@ class _Grid:
                 continue
             try:
                 plastic = [
-                    tuple(sum(plastic_moments(half, load[i, k])) / 2 for half in _halves(one))
+                    tuple(sum(plastic_moments(half, load[i, k])) / 2 for half in halves_of(one))
                     for k, one in zip(levels, line, strict=True)
                 ]
                 nodes = [
                     sum(
-                        sum(plastic_moments(_halves(one)[1 - at], 0.0))
+                        sum(plastic_moments(halves_of(one)[1 - at], 0.0))
                         / 2
                         * self._to_axis(i, k, i - 1 + at)
                         for at, one in enumerate(pair)
@@ -705,14 +494,14 @@ class _Grid:
         return columns, beams
 
     def _ends(
-        self, building: Building, load: dict[tuple[int, int], float], i: int, k: int
+        self, drawing: FrameDrawing, load: dict[tuple[int, int], float], i: int, k: int
     ) -> tuple[float, float]:
         """Return the rigid lengths of columns and beams in a node [m]."""
         places = [(i, k), (i, k + 1)]
-        columns = [(self.columns[at], load[at]) for at in places if _is_drawn(self.columns.get(at))]
+        columns = [(self.columns[at], load[at]) for at in places if is_drawn(self.columns.get(at))]
         left, right = self.beams.get((i - 1, k)), self.beams.get((i, k))
-        beams = [_halves(left)[1]] if _is_drawn(left) else []
-        beams += [_halves(right)[0]] if _is_drawn(right) else []
+        beams = [halves_of(left)[1]] if is_drawn(left) else []
+        beams += [halves_of(right)[0]] if is_drawn(right) else []
         wall = self.wall_at(i, k)
         if wall is not None:
             # It goes on through the floor, and beams reach its face.
@@ -720,28 +509,28 @@ class _Grid:
         if not columns or not beams:
             return 0.0, 0.0
         # The half of a column that ends in the node.
-        parts = [_halves(one)[j == 0] for j, (one, _) in enumerate(columns)]
+        parts = [halves_of(one)[j == 0] for j, (one, _) in enumerate(columns)]
         try:
-            return rigid_ends(parts, beams, axial_load=[n for _, n in columns], share=building.ends)
+            return rigid_ends(parts, beams, axial_load=[n for _, n in columns], share=drawing.ends)
         except InputError as error:
             raise InputError(f"frame: node N-{i}-{k}: {error}") from None
 
-    def panels(self, building: Building) -> dict[str, Any]:
+    def panels(self, drawing: FrameDrawing) -> dict[str, Any]:
         """Return the springs in the panels of the nodes."""
         found: dict[str, Any] = {}
-        hoops = building.panel_hoops
+        hoops = drawing.panel_hoops
         if hoops is None:
             return found
         if hoops != "none":
             _arguments.instance(hoops, "frame: panel_hoops", Ties, 'or "none"')
         for i, k in self.columns:
             columns, beams = (
-                [one for one in several if _is_drawn(one)] for several in self.around(i, k)
+                [one for one in several if is_drawn(one)] for several in self.around(i, k)
             )
             if not columns or not beams or self.wall_at(i, k) is not None:
                 continue
-            column = _halves(columns[0])[0]
-            beam = max((_halves(one)[0] for one in beams), key=lambda one: one.depth)
+            column = halves_of(columns[0])[0]
+            beam = max((halves_of(one)[0] for one in beams), key=lambda one: one.depth)
             if not (
                 isinstance(column, RectangularSection) and isinstance(beam, RectangularSection)
             ):
@@ -759,42 +548,44 @@ def _at(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
     return found[-1] if found else None
 
 
-def _halves(one: Any) -> Halves:
+def halves_of(one: Any) -> Halves:
+    """Return the sections of the two halves of a member."""
     return one if isinstance(one, tuple) else (one, one)
 
 
-def _is_drawn(one: Any) -> bool:
+def is_drawn(one: Any) -> bool:
+    """Return whether a cell has sections."""
     return one is not None and not isinstance(one, FrameMember)
 
 
 def _area(one: Any) -> float:
-    if not _is_drawn(one):
+    if not is_drawn(one):
         return 0.0
-    return 0.5 * sum(part.gross_area for part in _halves(one))
+    return 0.5 * sum(part.gross_area for part in halves_of(one))
 
 
 def _half_depth(one: Any, other: Any, end: int) -> float:
     """Return half the depth of a member [m]; of one by hand, the rigid end of the other there."""
-    if _is_drawn(one):
-        return 0.25 * sum(part.depth for part in _halves(one))
+    if is_drawn(one):
+        return 0.25 * sum(part.depth for part in halves_of(one))
     rigid = other.rigid_end if one is not None and isinstance(other, FrameMember) else 0.0
     return float(rigid[end] if isinstance(rigid, tuple) else rigid)
 
 
 def _elastic_kind(one: Any) -> FrameMember | None:
     """Return a member of the gross section, for the axial loads."""
-    if not _is_drawn(one):
+    if not is_drawn(one):
         return one  # type: ignore[no-any-return]
-    parts = _halves(one)
+    parts = halves_of(one)
     modulus, inertia = parts[0].concrete_law["ec"], 0.5 * sum(part.inertia for part in parts)
     return FrameMember(modulus, _area(one), inertia)
 
 
 def _rounded(one: Any, load: float) -> float:
     """Return an axial load in steps of a part of f'c A_g; a column in tension has none."""
-    if not _is_drawn(one):
+    if not is_drawn(one):
         return load
-    step = _STEP * _area(one) * _halves(one)[0].concrete.fc
+    step = _STEP * _area(one) * halves_of(one)[0].concrete.fc
     return max(round(load / step), 1) * step if load > 0 else 0.0
 
 
@@ -807,7 +598,7 @@ def _kind(
     name: str,
     spans: tuple[Pair, Pair] | None = None,
 ) -> FrameMember | None:
-    if not _is_drawn(one):
+    if not is_drawn(one):
         return one  # type: ignore[no-any-return]
     clear = length - sum(ends)
     if not clear > 0:
@@ -815,10 +606,10 @@ def _kind(
             f"frame: member {name} of {length:g} m has rigid ends of {sum(ends):g} m, and no length"
         )
     try:
-        made = _made(_halves(one), clear, load, span_load, spans)
+        made = _made(halves_of(one), clear, load, span_load, spans)
     except InputError as error:
         raise InputError(f"frame: member {name}: {error}") from None
-    return model.with_rigid_end(made, ends)
+    return with_rigid_end(made, ends)
 
 
 @lru_cache(maxsize=1024)

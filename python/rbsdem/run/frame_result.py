@@ -15,9 +15,12 @@ from rbsdem._files import data_frame, text_table
 from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import Frame, FrameSpring, MemberGeometry, index_of, parabola
-from rbsdem.model.rows import AXIAL_FAILURE_FACTORS, LimitState, LimitStates, Rows
+from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of, parabola
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
+from rbsdem.run.limit_states import LimitState, LimitStates
+from rbsdem.run.rows import Rows
+from rbsdem.section.frame import Frame
+from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
 
 #: Names of the springs' deformations and forces in rows, by group.
 _CHANNELS = {
@@ -99,7 +102,7 @@ class MemberHistory:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FrameResult(Rows):
-    """Rows of an analysis of a frame: arrays with a row for each that was kept.
+    """The result of an analysis of a frame: arrays with a row for each that was kept.
 
     Attributes
     ----------

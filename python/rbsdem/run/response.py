@@ -1,186 +1,28 @@
-"""Static paths and responses in time, and the results that they return."""
+"""Static paths, push-overs and responses in time."""
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
-import sys
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, replace
-from functools import partial
+from dataclasses import replace
 from typing import Any, Concatenate, ParamSpec, Protocol, overload
 
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike, Unpack
-from rbsdem.checks.limit_states import Hinge, all_thresholds
-from rbsdem.checks.limit_states import hinge as hinge_of
-from rbsdem.checks.limit_states import limit_states as find_limit_states
-from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
-from rbsdem.model import frame_result
-from rbsdem.model.column import NOTES_ON, Column
-from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.rows import HasEndState, LimitStates, Response, Rows, settings_of, state_of
+from rbsdem.errors import InputError, SolveError
+from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion, acting
-from rbsdem.run.accuracy import Errors, answer_of, common_interval, errors_of
-from rbsdem.run.solver import METHODS, Solver, checked_solver
+from rbsdem.run.column_result import Result
+from rbsdem.run.frame_result import FrameResult, shear_span_note, span_note
+from rbsdem.run.rows import Rows
+from rbsdem.run.solve import HasEndState, follow, march, tell
+from rbsdem.run.solver import Solver, checked_solver
+from rbsdem.section.frame import Frame, Structure, checked_structure
 
 P = ParamSpec("P")
-
-#: By how much a tolerance is sharpened, at least to where it and not the stability limits the
-#: steps, and the least one.
-_SHARPER, _SHARP, _LEAST = 100.0, 1e-9, 1e-13
-
-#: Tolerance by default.
-_USUAL_TOLERANCE = 1e-6
-_DEFORMATIONS = ("slip", "rotation", "opening")
-_NONE = np.empty(0)
-_NONE.flags.writeable = False
-#: Most steps times bodies of a run that is short enough to be done once more.
-_SHORT = 50_000
-
-
-@dataclass(frozen=True)
-class ErrorEstimate:
-    """Known errors of one result.
-
-    Attributes
-    ----------
-    method : str
-        The method that was used.
-    measured : float
-        The largest of `Result.refined_error`, where that run is short; NaN where it is not, and for
-        a static path.
-    usual, largest : float
-        Error of the method at its own step or tolerance, relative to the peaks: median and largest
-        of the responses of ``studies/error_classes.py``, which say little of another one. 0 for a
-        static path, which is exact but for round-off.
-    responses : int
-        How many responses those were.
-    own_setting : bool
-        Whether the result has this step or tolerance; else a setting of the user.
-    energy : float
-        Error of the energy balance of this result, over its largest energy. It is no
-        measure of the response, which may err by much more.
-    """
-
-    method: str
-    measured: float
-    usual: float
-    largest: float
-    responses: int
-    own_setting: bool
-    energy: float
-
-    def __str__(self) -> str:
-        if not self.usual > 0:
-            return f"{self.method}: exact but for round-off"
-        at = "" if self.own_setting else " at its own setting, which this is not"
-        tried = (
-            f"{self.usual:g} in the median of {self.responses} other responses, "
-            f"{self.largest:g} at most{at}"
-        )
-        if math.isnan(self.measured):
-            return f"{self.method}: errors over the peaks: {tried}; refined_error() measures it"
-        return (
-            f"{self.method}: error about {self.measured:.1g} of the peaks, by a finer run ({tried})"
-        )
-
-
-class Judged(Rows):
-    """Rows with the limit states that they reach, and their error."""
-
-    def limit_states(self) -> LimitStates:
-        """Return the limit states that the response reaches, with row, drift and source.
-
-        A layered hinge that knows its drawing: cracking, first yield, nominal moment, yield of the
-        hoops, spalling, the tensile strain before bars buckle, fracture of hoops and bars, by the
-        strains of its layers (in time the analysis needs ``openings=True``); other layered joints:
-        where a layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield
-        and cap.
-        All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
-        load. Of a frame: the first of its `events` of each kind, with the spring as source.
-        Nothing of the response is changed.
-
-        Raises
-        ------
-        InputError
-            If the openings of a layered hinge were not kept in time.
-        """
-        return find_limit_states(self)
-
-    @property
-    def error_estimate(self) -> ErrorEstimate:
-        """Estimate of the error: measured where that takes about 0.1 s, else by its method."""
-        about = self.summary
-        method = METHODS[about["method"]]
-        short = self.dynamic and about["steps"] * self.structure.n <= _SHORT
-        measured = math.nan
-        if short and about["status"] == "completed":
-            with contextlib.suppress(SolveError):
-                measured = self.refined_error().largest
-        usual = method.usual_error, method.largest_error, method.responses
-        own = not {"dt", "tolerance", "rho_infinity"} & set(self.call)
-        energy = about["relative_energy_residual"]
-        return ErrorEstimate(method.name, measured, *usual, own, energy)
-
-    def refined_error(self) -> Errors:
-        """Solve once more by the next finer setting and return the distance to it.
-
-        That is half the step, or a hundredth of the tolerance, or half of the increments of a
-        static path, by the same method. Where the error falls with the setting, as it does unless
-        the response is chaotic, it is about as large as this distance. With a tolerance that cannot
-        be made much sharper it is the distance to one a hundred times as large, which is more than
-        the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
-        number of rows.
-
-        Returns
-        -------
-        rbsdem.run.accuracy.Errors
-            Relative differences of the response (rms and largest), of the base moment, the energy
-            and the peak; `largest` is the largest of them.
-
-        Raises
-        ------
-        SolveError
-            If the finer setting does not solve the case.
-        """
-        return _refined_error(self)
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class Result(Judged, Response):
-    """The result of `cyclic` and `time_history`: a response with its limit states and its error."""
-
-    def hinge(self, joint: int = 1, *, length: float | None = None) -> Hinge:
-        """Return rotation, plastic rotation and curvature of a hinge.
-
-        Parameters
-        ----------
-        joint : int, optional
-            The joint, from 1 at the ground to n.
-        length : float, optional
-            Length of the hinge for its curvature [m]. Known of the hinge of a column that was made
-            from its drawing by the layered model.
-
-        Raises
-        ------
-        InputError
-            If there is no such joint, or the openings of a layered hinge were not kept in time.
-        """
-        return hinge_of(self, joint, length)
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class FrameResult(Judged, frame_result.FrameResult):
-    """The result of an analysis of a frame."""
-
-
-FrameResult.__doc__ = frame_result.FrameResult.__doc__
-Result.__doc__ = Response.__doc__
 
 
 class Analysis(Protocol[P]):
@@ -288,14 +130,11 @@ def cyclic(
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
     kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
-    settings = settings_of(every, kept, collapse_drift=collapse_drift, max_seconds=max_seconds)
-    state = None if initial is None else state_of(initial, "cyclic")
+    call: dict[str, Any] = {name: values, "axial_load": load, "initial": initial}
+    call |= {"collapse_drift": collapse_drift, "max_seconds": max_seconds}
     wanted = _arguments.boolean(corners, "corners")
-    if isinstance(column, Frame):
-        settings = _core.joined([settings, *column._lost()])
-    run = _core.cyclic(column._made, settings, name == "force", values, load, state, wanted)
-    call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
-    call |= {"every": every, "collapse_drift": collapse_drift, "max_seconds": max_seconds}
+    run = follow(column, call, every=every, openings=kept, corners=wanted)
+    call |= {"initial": _recorded_state(initial), "every": every, "corners": wanted or None}
     return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
@@ -418,25 +257,10 @@ def time_history(
     chosen = checked_solver(solver, "time_history") | {"collapse_drift": collapse_drift}
     kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
     moves = _arguments.boolean(motion, "motion")
-    settings = settings_of(every, kept, moves, **chosen)
-    times = _arguments.vector(time, "time")
-    if initial is None or isinstance(initial, Mapping):
-        begin, state, kept_initial = _initial_state(initial, column), None, initial
-    else:
-        begin, state = (_NONE, False), state_of(initial, "time_history")
-        kept_initial = _recorded_state(initial)
-    thresholds = all_thresholds(column, kept)
-    tell = partial(_tell, kind=LongRunWarning)
-    run, reached = _core.time_history(
-        column._made, settings, times, loads, *begin, state, thresholds, tell
-    )
-    call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
+    call = {"time": _arguments.vector(time, "time"), **loads, **chosen, "every": every}
+    run, reached = march(column, call | {"initial": initial}, kept, moves)
+    call["initial"] = _recorded_state(initial)
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
-
-
-def _tell(note: str, kind: type[Warning] = AccuracyWarning) -> None:
-    if NOTES_ON.get():
-        warn(note, kind)
 
 
 def _recorded_state(initial: Any) -> Any:
@@ -444,37 +268,6 @@ def _recorded_state(initial: Any) -> Any:
     if isinstance(initial, HasEndState):
         return initial.state
     return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
-
-
-def _initial_state(
-    initial: Mapping[str, ArrayLike] | None, column: Structure
-) -> tuple[Array, bool]:
-    """Return deformations and velocities at the start, and whether openings are given.
-
-    An empty array means a column at rest.
-    """
-    if not initial:
-        return _NONE, False
-    if isinstance(column, Frame):
-        raise InputError(
-            "time_history: a frame begins under its dead load, or with initial= in the state that "
-            "another analysis ended in; it takes no deformations of joints"
-        )
-    n = len(column.joint_numbers)
-    known = _DEFORMATIONS if column.opens else _DEFORMATIONS[:2]
-    parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
-    for name, values in initial.items():
-        if name not in parts:
-            if name in ("opening", "opening_velocity"):
-                raise InputError(
-                    f"initial: {name!r} needs joints that open; give the column axial_spring"
-                )
-            raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(parts)}")
-        array = _arguments.finite_vector(np.atleast_1d(values), f"initial: {name}")
-        if array.shape != (n,):
-            raise InputError(f"initial: {name} has {array.size} values for n = {n} joints")
-        parts[name] = array
-    return np.concatenate([*parts.values()]), "opening" in initial
 
 
 def _return(
@@ -497,10 +290,10 @@ def _return(
         raise error
     told = [note]
     if isinstance(result, FrameResult):
-        told += [frame_result.span_note(result), frame_result.shear_span_note(result)]
+        told += [span_note(result), shear_span_note(result)]
     for text in told:
         if text:
-            _tell(text)
+            tell(text)
     return result
 
 
@@ -601,61 +394,3 @@ def _strength_ends(displacement: Array, force: Array, side: float) -> float | No
     if f[i] <= 0:
         return float(side * u[: i + 1].max())
     return float(side * (u[i] + (u[i + 1] - u[i]) * f[i] / (f[i] - f[i + 1])))
-
-
-def _refined_error(result: Rows) -> Errors:
-    """Return the differences of a result from that of the next finer setting."""
-    with unwarned():
-        # They were told with the result itself.
-        if result.dynamic:
-            finer: Any = time_history(result.structure, **_finer(result))
-        else:
-            finer = cyclic(result.structure, **_divided(result))
-    driven = "displacement" in result.call
-    points = result.time
-    if not result.dynamic:
-        points = points[(points >= 0) & (points == np.floor(points))]
-    one = answer_of(result, points, driven)
-    other = answer_of(finer, points, driven, 1 if result.dynamic else 2)
-    found = asdict(errors_of(one, other))
-    # Two runs with the same digits say no more than that the error is within their last ones.
-    least = math.sqrt(one.time.size) * sys.float_info.epsilon
-    return Errors(**{name: max(error, least) for name, error in found.items()})
-
-
-def _finer(result: Rows) -> dict[str, Any]:
-    """Return the keywords of `time_history` for the next finer setting."""
-    call, about = dict(result.call), result.summary
-    method = METHODS[about["method"]]
-    if call.get("method", "auto") == "auto":
-        call.pop("tolerance", None)
-        if method.name == "rk4" and "events located" in about["reason"]:
-            call["events"] = "located"
-        if method.adaptive and "tolerance" in result.call:
-            call["tolerance"] = result.call["tolerance"]
-    call["method"] = method.name
-    if method.adaptive:
-        tolerance = call.get("tolerance", _USUAL_TOLERANCE)
-        sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
-        # Where there is none that is much sharper, the distance to one that is not bounds it.
-        return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
-    if "every" in call:
-        call["every"] *= 2
-    if "dt" in call:
-        return call | {"dt": call["dt"] / 2}
-    # Rows stay at the times of the loading if the step divides all intervals.
-    interval, regular = common_interval(call["time"])
-    step = about["time_step"]
-    parts = 2 * max(math.ceil(interval / step * (1 - 1e-9)), 1)
-    return call | {"dt": interval / parts if regular else step / 2}
-
-
-def _divided(result: Rows) -> dict[str, Any]:
-    """Return the keywords of `cyclic` with each increment cut in two."""
-    call = dict(result.call)
-    name = "displacement" if "displacement" in call else "force"
-    path = np.concatenate([[0.0], call[name]])
-    fine = np.repeat(call[name], 2)
-    fine[::2] = 0.5 * (path[:-1] + path[1:])
-    # From the middle of the first increment, every second point is one of the path.
-    return call | {name: fine, "every": None, "corners": False}
