@@ -1,6 +1,6 @@
 """Walls from their drawings against tested walls: the tables of docs/walls.md.
 
-    python studies/walls_measured.py [FOLDER] [--fit] [--bands] [--figures FOLDER]
+    python studies/walls_measured.py [FOLDER] [--fit] [--bands] [--write] [--figures FOLDER]
 
 FOLDER, by default that of the environment variable RBSDEM_WALLS_DIR, holds `walls.csv` (drawings of
 rectangular walls and four points of their envelopes) and `loop_NAME.csv` (digitised loops in mm and
@@ -12,6 +12,12 @@ silent: a cover of 20 mm, 0.12 of the thickness at most; bars of boundary elemen
 web bars by the ratio that is stated. `--fit` chooses the constants of the shear relation of walls
 and their stiffness with each publication left out in turn; `--bands` finds the scatter of
 `data/wall_spread.json` likewise, and prints how much of the left-out tests the bands hold.
+`--write` does both, and renews what follows from a version of the parameters: that file,
+`data/wall_accuracy.csv`, and the tables of docs/walls.md.
+
+A wall is told to fail in shear, or in bending first, from its drawing: by
+`rbsdem.run.walls.failure_of`. How the tests failed is what their authors, and for walls that
+bend those of the collection, say.
 """
 
 from __future__ import annotations
@@ -22,7 +28,6 @@ import itertools
 import json
 import math
 import os
-import time
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -35,18 +40,21 @@ import numpy as np
 import rbsdem
 from rbsdem import Bars, Boundary, Concrete, Curtain, Hoops, Steel, WallSection
 from rbsdem.run import bands
+from rbsdem.run.walls import FAILURES, failure_of
+from rbsdem.section.hinge import strips_of
 from rbsdem.section.parameters import ModelParameters, parameters
-from rbsdem.section.strength import (
-    arch_factor,
-    axial_strut,
-    column_shear_strength,
-    nominal_point,
-    shear_strength_mcft,
-)
+from rbsdem.section.strength import column_shear_strength, nominal_point, wall_shear_strength
+
+ROOT = Path(__file__).resolve().parents[1]
 
 #: Rows of which the forces are those of other bars.
 DOUBTFUL = ("[12]", "[20]")
-CLASSES = ("flexure", "mixed", "shear")
+_WORDS = {"flexure": "bending", "mixed": "shear after bending", "shear": "shear"}
+#: What is compared of test and model.
+MEASURED = ("strength", "stiffness", "drift_at_loss")
+#: The share of tests that a band is to hold, and the shares between which these lie.
+HELD = 0.8
+ENDS = (0.5 * (1 - HELD), 0.5 * (1 + HELD))
 #: Points of a push, and the least drift of one.
 POINTS, LEAST_DRIFT = 100, 0.005
 
@@ -84,7 +92,7 @@ class Test:
     Attributes
     ----------
     publication, name, failure : str
-        Where it is from, what it is called there, one of `CLASSES`.
+        Where it is from, what it is called there, one of `FAILURES`.
     section : WallSection
         Its section.
     span, axial_load : float
@@ -209,9 +217,14 @@ def column(test: Test, given: ModelParameters | None = None) -> Any:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the model has for a test, and test over model."""
+    """What the model has for a test, and test over model.
+
+    `told` is how the wall fails by its drawing; the flexural strength is that of a push with a
+    shear spring that does not yield.
+    """
 
     test: Test
+    told: str
     force: float
     shear_strength: float
     flexural_strength: float
@@ -238,6 +251,7 @@ def outcome(test: Test, given: ModelParameters | None = None) -> Outcome:
     fell = test.force[-1] <= 0.85 * test.force[2]
     return Outcome(
         test,
+        failure_of(test.section, test.span, test.axial_load, spring.f_y),
         float(push.force.max()),
         spring.f_y,
         float(bent),
@@ -255,27 +269,60 @@ def shown(ratios: Iterable[float]) -> str:
     return f"{math.exp(np.median(values)):.2f} / {values.std(ddof=1):.3f}"
 
 
-def table_of_walls(found: Sequence[Outcome]) -> None:
-    """Print test over model by classes."""
-    print(
-        "| test over model, median / sd of ln | walls | strength | first stiffness | drift lost |"
-    )
-    print("| --- | --- | --- | --- | --- |")
-    for name in ("all", *CLASSES):
-        own = [one for one in found if name in ("all", one.test.failure)]
-        cells = [
-            shown(getattr(one, what) for one in own)
-            for what in ("strength", "stiffness", "drift_at_loss")
-        ]
-        print(f"| {name} | {len(own)} | {' | '.join(cells)} |")
-    ratios = np.array([one.strength for one in found])
-    low, high = np.quantile(ratios, (0.1, 0.9))
-    print(f"\n80 % of {ratios.size} walls within {low:.2f} and {high:.2f} of the model")
-    for name in CLASSES:
+def table_of_walls(found: Sequence[Outcome]) -> list[str]:
+    """Return test over model by classes: as the tests failed, and as their drawings tell."""
+    lines = [
+        "| median / sd of ln | walls | strength | first stiffness | drift at loss |",
+        "| --- | ---: | --- | --- | --- |",
+    ]
+    groups = {"all": list(found)}
+    for name in FAILURES:
+        groups[f"failed in {_WORDS[name]}"] = [o for o in found if o.test.failure == name]
+    for name in FAILURES:
+        groups[f"told to fail in {_WORDS[name]}"] = [o for o in found if o.told == name]
+    for name, own in groups.items():
+        cells = [shown(getattr(one, what) for one in own) for what in MEASURED]
+        lines.append(f"| {name} | {len(own)} | {' | '.join(cells)} |")
+    return lines
+
+
+def table_of_failures(found: Sequence[Outcome]) -> list[str]:
+    """Return how walls are told to fail, by how they did."""
+    lines = [
+        "| failed in | "
+        + " | ".join(f"told: {_WORDS[name]}" for name in FAILURES)
+        + " | V_s below the force of a push in bending alone |",
+        "| --- | ---: | ---: | ---: | ---: |",
+    ]
+    for name in FAILURES:
         own = [one for one in found if one.test.failure == name]
-        share = np.mean([one.shear_strength < one.flexural_strength for one in own])
-        print(f"V_shear below V_flexure: {100 * share:.0f} % of {name}")
-    drifts(found)
+        shares = [np.mean([one.told == way for one in own]) for way in FAILURES]
+        shares.append(np.mean([one.shear_strength < one.flexural_strength for one in own]))
+        cells = " | ".join(f"{100 * share:.0f} %" for share in shares)
+        lines.append(f"| {_WORDS[name]} | {cells} |")
+    return lines
+
+
+def accuracy(found: Sequence[Outcome]) -> list[str]:
+    """Return the lines of `data/wall_accuracy.csv`: by how the walls are told to fail."""
+    names = [f"{what}_{part}" for what in ("strength", "stiffness", "drift")
+             for part in ("median", "scatter")]  # fmt: skip
+    lines = [
+        "# Test over model of rectangular walls, by how they fail by their drawings",
+        "# (rbsdem.run.walls.failure_of): medians and standard deviations of logarithms;",
+        "# between lower and upper are 80 % of the largest forces. By studies/walls_measured.py.",
+        f"failure,walls,{','.join(names)},lower,upper",
+    ]
+    for name in FAILURES:
+        own = [one for one in found if one.told == name]
+        numbers = []
+        for what in MEASURED:
+            logs = np.log([getattr(one, what) for one in own])
+            logs = logs[np.isfinite(logs)]
+            numbers += [math.exp(float(np.median(logs))), float(logs.std(ddof=1))]
+        numbers += np.quantile([one.strength for one in own], ENDS).tolist()
+        lines.append(f"{name},{len(own)},{','.join(f'{number:.3f}' for number in numbers)}")
+    return lines
 
 
 def drifts(found: Sequence[Outcome]) -> None:
@@ -295,21 +342,46 @@ def drifts(found: Sequence[Outcome]) -> None:
         ("0.078 (l_w c/b^2)^-0.41", drift / [one["walls.drift"] for one in values]),
     ):
         print(f"  {name}: {shown(ratios)}")
-    axis = [nominal_point(one.test.section, one.test.axial_load)[0] for one in bent]
-    wall = [(one.test.section.length, one.test.section.thickness) for one in bent]
-    slender = np.log([size * c / b**2 for c, (size, b) in zip(axis, wall, strict=True)])
-    terms, places = np.column_stack((np.ones(len(bent)), slender)), np.log(drift)
-    unseen = np.zeros(len(bent))
     publications = np.array([one.test.publication for one in bent])
-    for publication in set(publications.tolist()):
-        out = publications == publication
-        line = np.linalg.lstsq(terms[~out], places[~out])[0]
-        unseen[out] = places[out] - terms[out] @ line
-    first, power = np.linalg.lstsq(terms, places)[0]
-    print(
-        f"  fitted to {len(set(publications.tolist()))} publications: {math.exp(first):.3f} "
-        f"(l_w c/b^2)^{power:.2f}, left out {shown(np.exp(unseen))}"
-    )
+    columns = {name: np.array(each) for name, each in terms_of_drift(bent).items()}
+    for names in ((), ("l_w c/b^2",), *(("l_w c/b^2", name) for name in list(columns)[1:])):
+        terms = np.column_stack([np.ones(len(bent)), *(np.log(columns[name]) for name in names)])
+        unseen = np.zeros(len(bent))
+        for publication in set(publications.tolist()):
+            out = publications == publication
+            line = np.linalg.lstsq(terms[~out], np.log(drift)[~out])[0]
+            unseen[out] = np.log(drift)[out] - terms[out] @ line
+        first, *powers = np.linalg.lstsq(terms, np.log(drift))[0].tolist()
+        form = " ".join(f"({n})^{power:.2f}" for n, power in zip(names, powers, strict=True))
+        print(f"  fitted, left out: {math.exp(first):.3f} {form}: {shown(np.exp(unseen))}")
+
+
+def terms_of_drift(found: Sequence[Outcome]) -> dict[str, list[float]]:
+    """Return what drift at loss may depend on; all but the first was tried and not kept.
+
+    Spacing of hoops over bars stands for their buckling, the ratio of the hoops for crushing, l_w/b
+    for buckling out of the plane. Pressure of the hoops alone helps, but was found on these walls.
+    """
+    terms: dict[str, list[float]] = {}
+    for one in found:
+        section, load = one.test.section, one.test.axial_load
+        edge = section.ends[0]
+        assert edge is not None
+        axis, moment = nominal_point(section, load)
+        size, b, fc = section.length, section.thickness, section.concrete.fc
+        shear = moment / one.test.span / (size * b * math.sqrt(1e6 * fc))
+        values = {
+            "l_w c/b^2": size * axis / b**2,
+            "c/b": axis / b,
+            "l_w/b": size / b,
+            "s/d_b": edge.hoops.spacing / float(edge.bar_diameter or 1.0) if edge.hoops else 20.0,
+            "0.02 + rho_s f_yh/f'c": 0.02 + strips_of(section, 10).hoop_pressure[0] / fc,
+            "M/(V l_w)": one.test.span / size,
+            "V_n/(sqrt(f'c) l_w b)": shear,
+        }
+        for name, value in values.items():
+            terms.setdefault(name, []).append(value)
+    return terms
 
 
 # ---- constants, with publications left out ------------------------------------------------------
@@ -344,16 +416,16 @@ def left_out(rows: Sequence[tuple[str, dict[Any, float]]], best: Callable[[Any],
 def fit(found: Sequence[Outcome]) -> None:
     """Choose the constants of the relations of walls with each publication left out in turn."""
     sheared = [one.test for one in found if one.test.failure == "shear"]
+    factor = parameters().values["shear_strength"]
 
     def strength(test: Test, begins: float, most: float, strut: float) -> float:
         given = test.section, test.span
-        arch = arch_factor(*given, 0.0, begins=begins, most=most)
-        by_theory = shear_strength_mcft(*given, test.axial_load, arch=arch)
-        return 1.02 * (by_theory + strut * axial_strut(*given, test.axial_load))
+        constants = {"begins": begins, "most": most, "strut": strut}
+        return factor * wall_shear_strength(*given, test.axial_load, **constants)
 
     def of_columns(test: Test) -> float:
         given = test.section, test.span, test.axial_load
-        return column_shear_strength(*given)
+        return factor * column_shear_strength(*given)
 
     of_today = [test.force[2] / of_columns(test) for test in sheared]
     print(f"\n{len(sheared)} shear failures, relation of columns: {shown(of_today)}")
@@ -386,8 +458,6 @@ def fit(found: Sequence[Outcome]) -> None:
 
 #: Groups that have widths of their own, see `rbsdem.run.bands`.
 GROUPS = ("far from the shear strength", "near it, squat", "near it, slender")
-#: The share of tests that a band is to hold.
-HELD = 0.8
 
 
 @dataclass(frozen=True)
@@ -437,8 +507,8 @@ def spread(one: Outcome, scatter: bands.Scatter) -> Spread:
     return Spread(one, group, np.where(off > 0, off / up[rows], -off / down[rows]))
 
 
-def fit_bands(found: Sequence[Outcome]) -> None:
-    """Find the scatter of walls, and print what its bands hold of publications left out."""
+def fit_bands(found: Sequence[Outcome]) -> tuple[dict[str, Any], list[str]]:
+    """Return the scatter of walls, and a table of what bands hold of publications left out."""
     publications = [one.test.publication for one in found]
     known = bands.scatter_of_tests()
     scatter = replace(
@@ -451,39 +521,54 @@ def fit_bands(found: Sequence[Outcome]) -> None:
     ratio = np.array([one.strength for one in found])
     groups = np.array([one.group for one in beside])
     held, inside = np.zeros((len(found), 4)), np.zeros(len(found))
-    ends = [(1 - HELD) / 2, (1 + HELD) / 2]
     for publication in dict.fromkeys(publications):
         seen = places != publication
         for i in np.flatnonzero(~seen):
             like = [j for j in np.flatnonzero(seen) if groups[j] == groups[i]]
             width = np.quantile(np.concatenate([beside[j].needed for j in like]), HELD)
             held[i] = beside[i].needed <= width
-            low, high = np.quantile(ratio[like], ends)
+            low, high = np.quantile(ratio[like], ENDS)
             inside[i] = low <= ratio[i] <= high
-    print(
-        "\n| publications left out | walls | points in the band | largest force in its interval |"
-    )
-    print("| --- | --- | --- | --- |")
-    for name in CLASSES:
+    lines = [
+        "| publications left out: failed in | walls | points in the band | largest force inside |",
+        "| --- | ---: | ---: | ---: |",
+    ]
+    for name in FAILURES:
         own = [i for i, one in enumerate(found) if one.test.failure == name]
-        print(f"| {name} | {len(own)} | {held[own].mean():.2f} | {inside[own].mean():.2f} |")
+        shares = f"{held[own].mean():.2f} | {inside[own].mean():.2f}"
+        lines.append(f"| {_WORDS[name]} | {len(own)} | {shares} |")
     widths, peaks = [], []
     like: list[int] = []
     for group, name in enumerate(GROUPS):
         # No slender wall failed in shear: these have the numbers of squat ones.
         like = [j for j in range(len(found)) if groups[j] == group] or like
         widths.append(float(np.quantile(np.concatenate([beside[j].needed for j in like]), HELD)))
-        peaks.append(tuple(float(x) for x in np.quantile(ratio[like], ends)))
-        print(f"{name}: {len(like)} walls, width {widths[-1]:.3f}, largest force {peaks[-1]}")
+        peaks.append(tuple(float(x) for x in np.quantile(ratio[like], ENDS)))
+        print(f"{name}: {len(like)} walls, width {widths[-1]:.3f}")
     lost = np.array([one.drift_at_loss for one in found])
-    drift = tuple(float(x) for x in np.nanquantile(lost, ends))
+    drift = tuple(float(x) for x in np.nanquantile(lost, ENDS))
     given = {
         "strength": scatter.strength, "stiffness": scatter.stiffness,
         "degradation": known.degradation, "shape": known.shape, "force": widths, "peak": peaks,
         "energy": known.energy, "drift": [drift] * 3,
     }  # fmt: skip
     rounded = json.loads(json.dumps(given), parse_float=lambda text: round(float(text), 3))
-    print(json.dumps(rounded, indent=2))
+    return rounded, lines
+
+
+def write(values: dict[str, Any], lines: Sequence[str], tables: dict[str, Sequence[str]]) -> None:
+    """Put scatter, accuracy and tables where they belong."""
+    text = json.dumps(values, indent=2) + "\n"
+    (ROOT / "data/wall_spread.json").write_text(text, "utf-8")
+    (ROOT / "data/wall_accuracy.csv").write_text("\n".join(lines) + "\n", "utf-8")
+    path = ROOT / "docs/walls.md"
+    text = path.read_text("utf-8")
+    for name, table in tables.items():
+        first, last = f"<!-- walls: {name} -->\n", "<!-- end of walls -->"
+        begin = text.index(first) + len(first)
+        body = "\n".join(table)
+        text = f"{text[:begin]}\n{body}\n\n{text[text.index(last, begin) :]}"
+    path.write_text(text, "utf-8")
 
 
 # ---- loops --------------------------------------------------------------------------------------
@@ -519,30 +604,31 @@ def loop_wall(name: str) -> tuple[WallSection, float, float]:
     return section, height, load
 
 
-def predicted(folder: Path, name: str) -> tuple[Any, Any, float]:
-    """Return measured loop, prediction and time [s]."""
+def predicted(folder: Path, name: str) -> tuple[Any, Any]:
+    """Return measured loop and prediction."""
     section, height, load = loop_wall(name)
     d, f = loop(folder, name)
     made = rbsdem.section.wall(section, height, axial_load=load)
-    start = time.perf_counter()
-    result = rbsdem.cyclic(made, displacement=d)
-    return (d, f), result, time.perf_counter() - start
+    return (d, f), rbsdem.cyclic(made, displacement=d)
 
 
-def table_of_loops(folder: Path) -> None:
-    """Print the scores of the loops."""
-    print("\n| wall | test kN | nrmse | peak over test | work over test | ms |")
-    print("| --- | --- | --- | --- | --- | --- |")
+def table_of_loops(folder: Path) -> list[str]:
+    """Return the scores of the loops."""
+    lines = [
+        "| wall | largest force [kN] | nrmse | model over test: force | work |",
+        "| --- | ---: | ---: | ---: | ---: |",
+    ]
     errors = []
     for name in LOOPS:
-        (d, f), result, seconds = predicted(folder, name)
+        (d, f), result = predicted(folder, name)
         score = rbsdem.compare(result, (d, f))
         errors.append(score.nrmse)
-        print(
+        lines.append(
             f"| {name.replace('_', ' ')} | {np.abs(f).max() / 1e3:.0f} | {score.nrmse:.3f} | "
-            f"{score.peak_ratio:.2f} | {score.energy_ratio:.2f} | {1e3 * seconds:.0f} |"
+            f"{score.peak_ratio:.2f} | {score.energy_ratio:.2f} |"
         )
-    print(f"\nmean {np.mean(errors):.3f}, worst {max(errors):.3f}")
+    lines.append(f"| mean | | {np.mean(errors):.3f} | | |")
+    return lines
 
 
 def main() -> None:
@@ -551,19 +637,30 @@ def main() -> None:
     parser.add_argument("folder", nargs="?", default=os.environ.get("RBSDEM_WALLS_DIR"))
     parser.add_argument("--fit", action="store_true")
     parser.add_argument("--bands", action="store_true")
-    parser.add_argument("--figures", type=Path)
+    parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     if given.folder is None:
         parser.error("give the folder, or set RBSDEM_WALLS_DIR")
     folder = Path(given.folder)
     warnings.simplefilter("ignore")
     found = [outcome(test) for test in tests(folder)]
-    table_of_walls(found)
-    table_of_loops(folder)
+    tables: dict[str, Sequence[str]] = {
+        "accuracy": table_of_walls(found),
+        "failures": table_of_failures(found),
+        "loops": table_of_loops(folder),
+    }
+    low, high = np.quantile([one.strength for one in found], ENDS)
+    values: dict[str, Any] = {}
+    if given.bands or given.write:
+        values, tables["bands"] = fit_bands(found)
+    for table in tables.values():
+        print("\n" + "\n".join(table))
+    print(f"\n80 % of {len(found)} walls within {low:.2f} and {high:.2f} of the model")
+    drifts(found)
     if given.fit:
         fit(found)
-    if given.bands:
-        fit_bands(found)
+    if given.write:
+        write(values, accuracy(found), tables)
 
 
 if __name__ == "__main__":

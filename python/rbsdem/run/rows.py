@@ -29,6 +29,7 @@ from rbsdem.run.limit_states import LimitStates
 from rbsdem.run.limit_states import limit_states as find_limit_states
 from rbsdem.run.solve import STATE_HEAD, follow, last_state
 from rbsdem.run.solver import METHODS
+from rbsdem.run.walls import WallAccuracy, wall_accuracy
 from rbsdem.section.frame import Frame, Structure
 
 #: Where a work has appeared, by its kind; of articles with volume and pages.
@@ -255,6 +256,17 @@ class Rows(_Channels):
             If the openings of a layered hinge were not kept in time.
         """
         return find_limit_states(self)
+
+    def wall_accuracy(self) -> dict[str, WallAccuracy]:
+        """Return how far the model was off on tested walls like those of the structure.
+
+        Returns
+        -------
+        dict of str to rbsdem.run.walls.WallAccuracy
+            By the member at the foot of each drawn wall of a frame, of a wall that stands alone by
+            "wall"; printed it is a sentence. Empty without drawn walls.
+        """
+        return wall_accuracy(self.structure)
 
     @property
     def error_estimate(self) -> ErrorEstimate:

@@ -25,6 +25,9 @@ _STIFFEST = 2.0
 # Longest hinges over the length of the column, and the largest contact.
 _LONGEST_STEEL, _LONGEST_CONCRETE = 0.4, 0.8
 _LARGEST_CONTACT = 0.9
+# Axial load ratio of a wall from which on its bars grow stronger with their range of strain as
+# those of columns do; those of members without axial load do not (`rbsdem.section.member`).
+_GROWS_FROM = 0.05
 # Least slope of softening concrete [Pa], and least hardening of bars over their modulus.
 _LEAST_SOFTENING, _LEAST_HARDENING = 1e6, 0.0005
 # Bars endure at least as much as the widest limit of their elements may be (docs/rules.md).
@@ -255,6 +258,7 @@ def hinge_joint(
         layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening)))
     slip = given.slip_length * bond
     high = min(axial_load / section.gross_area / 40e6, 1.5)
+    growth = given.isotropic_hardening * _growing(section, ratio)
     buckles = given.buckling > 0 and given.fatigue > 0
 
     @cache
@@ -268,7 +272,7 @@ def hinge_joint(
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
             r0=given.r0 * math.exp(given.r0_stress * (high - 0.15)),
             **{name: getattr(given, name) for name in ("cr1", "cr2")},
-            isotropic_hardening=given.isotropic_hardening if hardens else 0.0,
+            isotropic_hardening=growth if hardens else 0.0,
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=_buckling_strain(pressure, ratio) * (steel_length + slip) if buckles else None,
             buckling=given.buckling if buckles else 0.0,
@@ -349,6 +353,15 @@ def _strength_of(
     fy, fu = (given.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
     lapped = section.lapped(steel)
     return (fy, fu, True) if lapped == 1.0 else (lapped * fy, lapped * fy, False)
+
+
+def _growing(section: Section, ratio: float) -> float:
+    """Return the share of their growth by their range of strain that bars have.
+
+    Those of a wall under little load are stretched much farther than those of the columns that it
+    was fitted to.
+    """
+    return min(max(ratio / _GROWS_FROM, 0.0), 1.0) if section.shape == "wall" else 1.0
 
 
 def _yield_moment(section: Section, axial_load: float, ratio: float, stress: float) -> float:

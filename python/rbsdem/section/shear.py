@@ -34,7 +34,6 @@ from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.strength import (
     SQUAT,
-    arch_factor,
     axial_failure_drift,
     axial_strut,
     bond_demand,
@@ -42,6 +41,7 @@ from rbsdem.section.strength import (
     shear_sizes,
     shear_strength_mcft,
     shear_strength_sezen,
+    wall_shear_strength,
 )
 
 KNEE = 0.48
@@ -492,10 +492,9 @@ def shear_spring(
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
         (2004), which is that of a principal tension; then has `cracked_shear_stiffness`; yields
-        near `rbsdem.section.strength.column_shear_strength`, in a wall near
-        `rbsdem.section.strength.shear_strength_mcft` with an `arch_factor` from two depths on and
-        the `axial_strut`; loses its force
-        by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
+        near `rbsdem.section.strength.column_shear_strength`, of a wall near
+        `rbsdem.section.strength.wall_shear_strength`; loses its force by the drift at axial
+        failure of Elwood and Moehle (2005). A section that is not symmetric
         has a negative side of its own, that of the section upside down.
     dict of str to (float, float)
         Least and largest values of parameters, beyond which they would change nothing.
@@ -587,9 +586,8 @@ def _side(
     wall = section.shape == "wall"
     strut = axial_strut(section, span, axial_load, shortest=0.0 if wall else SQUAT)
     if wall:
-        arch = arch_factor(section, span, 0.0, begins=given.shear_wall_arch, most=4.0)
-        by_theory = given.shear_wall_strut * strut
-        by_theory += shear_strength_mcft(section, span, axial_load, arch=arch)
+        constants = {"begins": given.shear_wall_arch, "strut": given.shear_wall_strut}
+        by_theory = wall_shear_strength(section, span, axial_load, **constants)
     else:
         by_theory = column_shear_strength(section, span, axial_load)
     # A section without bars in tension, which has no strength, still needs a spring with one.

@@ -678,6 +678,38 @@ def column_shear_strength(section: Section, length: float, axial_load: float) ->
     return shear_strength_mcft(*hinge, arch=arch, ties=truss(section), strut=strut)
 
 
+def wall_shear_strength(
+    section: Section,
+    length: float,
+    axial_load: float,
+    *,
+    begins: float,
+    strut: float,
+    most: float = 4.0,
+) -> float:
+    """Return the shear strength of a wall [N]: theory of sections with an arch, and the strut.
+
+    V_n = V_MCFT(k) + V_p: `shear_strength_mcft` with the `arch_factor` k of a wall without axial
+    load, and the `axial_strut`, as steep as it comes.
+
+    Parameters
+    ----------
+    section : Section
+        The section at the foot.
+    length : float
+        Shear span a [m].
+    axial_load : float
+        Compression positive [N].
+    begins, most : float
+        Shear span over d below which there is an arch, and its largest factor.
+    strut : float
+        Factor of the strut.
+    """
+    arch = arch_factor(section, length, 0.0, begins=begins, most=most)
+    of_load = axial_strut(section, length, axial_load, shortest=0.0)
+    return shear_strength_mcft(section, length, axial_load, arch=arch) + strut * of_load
+
+
 def truss(section: Section) -> float:
     """Return the shear that the ties carry in a truss of struts at 45 degrees [N].
 

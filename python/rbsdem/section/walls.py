@@ -48,7 +48,7 @@ def wall(
     It is a column of the layered model: a joint at the foot whose layers are strips of boundary
     core, confined by its own hoops, of cover and of web, and bars; an elastic wall above it that
     cracks; a shear spring in series. Its parameters are those fitted to columns; the shear spring
-    has a relation of its own for walls (`rbsdem.section.strength.arch_factor`).
+    has a relation of its own for walls (`rbsdem.section.strength.wall_shear_strength`).
 
     Parameters
     ----------

@@ -410,6 +410,7 @@ def _of_result(result: Result) -> Iterator[Sheet]:
         yield Sheet("Half-cycles", table=cycles.to_pandas())
     with suppress(InputError):
         yield Sheet("Limit states", table=result.limit_states().to_pandas(), beside=True)
+    yield from _walls(result)
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
 
 
@@ -441,7 +442,15 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     yield Sheet("Members", table=data_frame(rows), beside=len(members) > _MOST_MEMBERS)
     if result.frame.infilled:
         yield Sheet("Infills", CHECK_NOTE, table=infills(result))
+    yield from _walls(result)
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
+
+
+def _walls(result: Result | FrameResult) -> Iterator[Sheet]:
+    """Yield what tests say of the accuracy of drawn walls."""
+    told = "; ".join(f"{name}: {one}" for name, one in result.wall_accuracy().items())
+    if told:
+        yield Sheet("Accuracy of walls", f"{told}.")
 
 
 @sheets_of.register
