@@ -11,6 +11,7 @@ module rbs_output_notes
    use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
    use rbs_structure_column_column_record, only: column_record
+   use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_checks, only: is_rigid, is_strut
    use rbs_structure_frame_frame_record, only: frame_record
    use rbs_structure_structure, only: structure_type, horizontal, small, finite
@@ -60,6 +61,10 @@ module rbs_output_notes
 
    !> Share of the energies that the balance may miss.
    real(wp), parameter :: much = 0.05_wp
+
+   !> Share of its Euler load that the load along an inclined member may be, and how much of it is the error
+   !> of displacements: 1/4.93 - 1/7.84 in units of E I/l^2, of a cantilever with half of it at its top.
+   real(wp), parameter :: much_along = 0.01_wp, error_along = 0.74_wp
 
    !> Displacements beyond this share of the height are hardly meant.
    real(wp), parameter :: far = 0.5_wp
@@ -160,6 +165,10 @@ contains
       if (allocated(case%frame)) then
          call frame_notes(case%frame, notes)
          call period_note(structure, notes)
+         select type (structure)
+         class is (frame_type)
+            call inclined_note(structure, notes)
+         end select
       else
          call column_notes(case%column, notes)
       end if
@@ -261,6 +270,31 @@ contains
                         'building; '//meant)
       end subroutine check_floor
    end subroutine frame_notes
+
+   !> The load along an inclined member, which does second-order work as if it were at its ends.
+   subroutine inclined_note(frame, notes)
+      type(frame_type), intent(in) :: frame
+      type(message_list), intent(inout) :: notes
+      real(wp) :: share(frame%members)
+      integer :: i
+
+      if (.not. frame%axially_loaded) return
+      share = 0.0_wp
+      do i = 1, frame%members
+         associate (e => frame%element(i))
+            if (.not. (abs(e%load_across) > 0.0_wp .and. e%flexural_rigidity > 0.0_wp)) cycle
+            share(i) = abs(e%load_across*e%to_basic(1, 5)/e%to_basic(1, 4))*e%length**3 &
+                       /(pi**2*e%flexural_rigidity)
+         end associate
+      end do
+      i = maxloc(share, dim=1)
+      if (.not. share(i) > much_along) return
+      call notes%add('member '//trim(frame%member_name(i))//': it is inclined, and with '// &
+                     "kinematics = 'pdelta' the part of its load along its axis acts at its ends: "// &
+                     'displacements may err by some '// &
+                     to_text(anint(1000.0_wp*error_along*share(i))/10.0_wp)// &
+                     ' per cent of them; n members in its place divide that by n squared')
+   end subroutine inclined_note
 
    !> A period that is none of a building, as of stiffness or masses in another unit: that of the sway under
    !> the masses as loads (Rayleigh).

@@ -3,6 +3,7 @@ module rbs_solve_begin_make_structure
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_case_case_record, only: case_record
    use rbs_solve_end_state, only: end_state
    use rbs_solve_begin_make_column, only: make_column
@@ -112,7 +113,8 @@ contains
       character(len=12), parameter :: motion(3) = [character(len=12) :: 'move along x', 'move up', 'turn']
       type(series_tangent), allocatable :: tangent(:)
       real(wp) :: band(frame%half_width + 1, frame%unknowns)
-      real(wp) :: stiffness(frame%members), softest
+      !> Stiffness of elements along their axes and across, rotations over a length [N/m]
+      real(wp) :: stiffness(2, size(frame%element)), length, most
       integer :: at(2), unstable, i
 
       tangent = frame%initial_tangent
@@ -124,25 +126,31 @@ contains
       end if
       call factor_stiffness()
       if (matrix%positive .and. maxval(matrix%triangle(1, :)) < most_lost) return
-      ! With members of like stiffness a mechanism differs from round-off.
-      do i = 1, frame%members
-         associate (of => tangent(i)%stiffness, length => frame%element(i)%length)
-            stiffness(i) = max(of(1, 1), of(2, 2)/length**2, of(3, 3)/length**2)
+      ! With parts of like stiffness a mechanism differs from round-off.
+      length = sum(frame%element(:frame%members)%length)/frame%members
+      do i = 1, size(frame%element)
+         associate (of => tangent(i)%stiffness, e => frame%element(i))
+            stiffness(:, i) = [of(1, 1), max(of(2, 2), of(3, 3))/merge(length, e%length, e%is_panel)**2]
+            if (e%is_panel) stiffness(:, i) = [0.0_wp, of(1, 1)/length**2]
          end associate
       end do
-      softest = minval(stiffness, mask=stiffness > 0.0_wp)
-      do i = 1, frame%members
-         associate (of => tangent(i)%stiffness)
-            if (stiffness(i) > like_stiffness*softest) of = of*(like_stiffness*softest/stiffness(i))
+      most = like_stiffness*minval(stiffness, mask=stiffness > 0.0_wp)
+      do i = 1, size(frame%element)
+         associate (of => tangent(i)%stiffness, e => frame%element(i), &
+                    share => sqrt(min(1.0_wp, most/max(stiffness(:, i), most))))
+            if (e%is_panel) then
+               of = of*share(2)**2
+            else
+               of(1, :) = of(1, :)*share(1)
+               of(:, 1) = of(:, 1)*share(1)
+               of(2:, :) = of(2:, :)*share(2)
+               of(:, 2:) = of(:, 2:)*share(2)
+            end if
          end associate
       end do
       call factor_stiffness()
       if (matrix%positive) then
-         i = maxloc(stiffness, dim=1)
-         call fatal_error(error, bad_input, 'member '//trim(frame%member_name(i))//': it is so much '// &
-                          'stiffer than what holds it that the frame loses 10 of its 16 digits or more; '// &
-                          "a rigid member has interior = 'rigid' and no springs; lengths are in m "// &
-                          '(3200 mm is 3.2), areas in m2, inertias in m4, moduli in Pa')
+         call report_stiffest()
          return
       end if
       associate (free => maxloc(abs(matrix%triangle(1, :)), dim=1))
@@ -165,6 +173,28 @@ contains
          matrix%band(:frame%half_width + 1, :) = band
          call matrix%factor()
       end subroutine factor_stiffness
+
+      !> Name the part whose stiffness costs the digits, and what is rigid in its place.
+      subroutine report_stiffest()
+         character(len=:), allocatable :: part, remedy
+
+         at = maxloc(stiffness)
+         associate (e => frame%element(at(2)))
+            if (e%is_panel) then
+               part = 'node '//trim(frame%node_name(e%node(1)))//': its panel of '// &
+                      to_text(frame%initial_stiffness(e%before + 1))//' N m/rad'
+               remedy = 'a node without a panel is rigid'
+            else
+               part = 'member '//trim(frame%member_name(at(2)))//': '// &
+                      trim(merge('along its axis', 'in bending    ', at(1) == 1))//' it'
+               remedy = "one with interior = 'rigid' and no springs is rigid"
+            end if
+         end associate
+         call fatal_error(error, bad_input, part//' is so much stiffer than what holds it that the frame '// &
+                          'loses 10 of its 16 digits or more; '//remedy//'; lengths are in m (3200 mm is '// &
+                          '3.2), areas in m2, inertias in m4, moduli in Pa, stiffness of springs in N/m '// &
+                          'and N m/rad')
+      end subroutine report_stiffest
    end subroutine check_stable
 
 end module rbs_solve_begin_make_structure

@@ -140,6 +140,7 @@ contains
       if (allocated(error)) return
       call frame%build_later(springs%d)
       call frame%set_compression(springs%d, springs%forces(springs%d))
+      checkpoint%axial_force = frame%constant_axial
       ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
       checkpoint%force = 0.0_wp
       checkpoint%load = 0.0_wp
