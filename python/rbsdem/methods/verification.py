@@ -227,13 +227,101 @@ def coupled_continuum() -> list[float]:
     return [1e3 * pushover(grid, force=16.5e3 * 2.8 * 19.5, points=1).displacement[-1]]
 
 
-def rocking_wall() -> list[float]:
-    """Return the force of a wall without bars that rocks on 200 layers at 2 % drift [kN]."""
+def _rocking_foot() -> Layered:
+    """Return a joint of 1.2192 m that opens."""
     length, layers = 1.2192, 200
     places = length * ((np.arange(layers) + 0.5) / layers - 0.5)
-    foot = Layered([(float(y), Compression(1e12)) for y in places])
-    wall = Column(3.66, 1.0, axial_load=378e3, shear=Elastic(1e15), flexure=foot)
+    return Layered([(float(y), Compression(1e12)) for y in places])
+
+
+def rocking_wall() -> list[float]:
+    """Return the force of a wall without bars that rocks on 200 layers at 2 % drift [kN]."""
+    wall = Column(3.66, 1.0, axial_load=378e3, shear=Elastic(1e15), flexure=_rocking_foot())
     return [1e-3 * pushover(wall, drift=0.02).force.max()]
+
+
+def rocking_line() -> list[float]:
+    """Return the same wall in three storeys of a frame, with its P-Delta, at 2 % drift [kN]."""
+    above = FrameMember(1e13, 1.0, 1.0)
+    top = FrameNode("N-1-3", load_y=-378e3, push_x=1.0)
+    lowest = FrameMember(1e13, 1.0, 1.0, flexure={0.0: _rocking_foot()})
+    frame = Frame.grid(
+        [1.22] * 3, columns={(1, 0): above, (1, 1): lowest}, nodes=[top], pattern="nodes",
+        kinematics="pdelta",
+    )  # fmt: skip
+    return [1e-3 * pushover(frame, drift=0.02).base_shear[-1]]
+
+
+def tied_parts() -> list[float]:
+    """Return the limit load of two portals and a wall behind each other, tied at their floor [N].
+
+    Portals of 3 m with moments of 0.2 and 0.3 MN m in their columns, the wall with 1.2 MN m.
+    """
+    stiff = FrameMember(30e9, 1e3, 2e-3)
+    first, second = (FrameMember(30e9, 1e3, 2e-3, yield_moment=m) for m in (2e5, 3e5))
+    wall = FrameMember(30e9, 1e3, 0.15, flexure={0.0: Bilinear(k=1e9, d_y=1.2e-3, k_post=0.0)})
+    floor: Any = {"y": 3.0, "moves_with": "N-1-1"}
+    nodes = [
+        FrameNode("N-1-1", push_x=1.0),
+        *(FrameNode(f"P-{i}-0", x=20.0 + 6.0 * i, y=0.0, support="fixed") for i in (0, 1, 2)),
+        FrameNode("P-0-1", x=20.0, **floor),
+        FrameNode("P-1-1", x=26.0, y=3.0),
+        FrameNode("P-2-1", x=32.0, **floor),
+    ]
+    members = [
+        Member("C-a", "P-0-0", "P-0-1", second),
+        Member("C-b", "P-1-0", "P-1-1", second),
+        Member("B-a", "P-0-1", "P-1-1", stiff),
+        Member("W", "P-2-0", "P-2-1", wall),
+    ]
+    frame = Frame.grid([3.0], [6.0], columns=first, beams=stiff, nodes=nodes, members=members,
+                       pattern="nodes")  # fmt: skip
+    return [pushover(frame, drift=0.1).base_shear.max()]
+
+
+def leaning() -> list[float]:
+    """Return the displacement of a column that holds another, on pins, under 2 MN [m]."""
+    nodes = [
+        FrameNode("L-0", x=5.0, y=0.0, support="pinned"),
+        FrameNode("L-1", x=5.0, y=3.0, moves_with="N-1-1", load_y=-2e6),
+    ]
+    column = FrameMember(30e9, 1e3, 2e-3)
+    strut = Member("L", "L-0", "L-1", FrameMember(30e9, 1e3, 2e-3, ends="pinned"))
+    frame = Frame.grid([3.0], columns=column, nodes=nodes, members=[strut], kinematics="pdelta")
+    return [cyclic(frame, force=[1e5]).displacement[-1]]
+
+
+def wall_and_frame() -> tuple[str, Callable[[], list[float]]]:
+    """Return the displacement of the top of a wall and a frame of 20 storeys, in both ways [mm].
+
+    A wall of 0.3 x 6 m; two columns 0.4 m square between beams that do not bend; 20 kN/m.
+    """
+    number, height, modulus, load = 20, 3.0, 30e9, 20e3
+    inertia, of_column = 0.3 * 6.0**3 / 12, 0.4**4 / 12
+    whole = number * height
+    shear = 12 * modulus * 2 * of_column / height**2
+    k = whole * math.sqrt(shear / (modulus * inertia))
+    share = (k * math.sinh(k) + 1) / math.cosh(k) * (math.cosh(k) - 1) - k * math.sinh(k)
+    top = load * whole**4 / (modulus * inertia) / k**4 * (share + 0.5 * k**2)
+
+    def solve() -> list[float]:
+        levels = range(1, number + 1)
+        nodes = [
+            FrameNode(f"N-1-{i}", push_x=(0.5 if i == number else 1.0) / (number - 0.5))
+            for i in levels
+        ]
+        nodes.append(FrameNode("W-0", x=20.0, y=0.0, support="fixed"))
+        nodes += [FrameNode(f"W-{i}", x=20.0, y=i * height, moves_with=f"N-1-{i}") for i in levels]
+        kind = FrameMember(modulus, 1e3, inertia)
+        frame = Frame.grid(
+            [height] * number, [6.0], columns=FrameMember(modulus, 1e3, of_column),
+            beams=FrameMember(modulus, 1e3, 1e3 * of_column), nodes=nodes, pattern="nodes",
+            members=[Member(f"W-{i}", f"W-{i - 1}", f"W-{i}", kind) for i in levels],
+        )  # fmt: skip
+        force = load * height * (number - 0.5)
+        return [1e3 * pushover(frame, force=force, points=1).displacement[-1]]
+
+    return f"{1e3 * top:.2f}", solve
 
 
 def lost_column() -> list[float]:
@@ -604,6 +692,14 @@ PROBLEMS: list[Problem] = [
             "top [mm]", "14.01", coupled_continuum, "the floors are discrete", 5e-3),
     Problem("Wall that rocks", "closed form, N (l_w/2 - l_w/400)/H", "force [kN]", "62.644",
             rocking_wall),
+    Problem("Wall that rocks, P-Delta in a frame", "closed form, less N x drift", "force [kN]",
+            "55.084", rocking_line),
+    Problem("Portals and a wall, tied", "limit analysis, 4 M_1/h + 4 M_2/h + M_w/h", "load [N]",
+            "1066666.67", tied_parts),
+    Problem("Column that leans on another", "F/(3 E I/h^3 - P/h)", "displacement [m]", "0.0166667",
+            leaning),
+    Problem("Wall and frame, elastic", "Heidebrecht and Stafford Smith 1973, continuous medium",
+            "top [mm]", *wall_and_frame(), "the floors are discrete", 5e-3),
     Problem("Loss of a column, three floors", "limit analysis, 3 x 4 M_p/L", "load over M_p/L",
             "12.0000000", lost_column),
     Problem("Square section, eight bars", "program concreteproperties 0.7.0, ACI 318",
