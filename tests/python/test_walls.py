@@ -238,6 +238,22 @@ def test_rows_of_bars_stand_between_the_hoops():
         Boundary(0.26, rbsdem.Bars(6, 0.010))
 
 
+def test_a_wall_may_stand_behind_a_frame_at_one_place():
+    """Tied at its top it is an elastic spring beside another: the same as where it stands apart."""
+    kind = rbsdem.frames.FrameMember(30e9, 1e3, 2e-3)
+
+    def moved(x: float) -> float:
+        nodes = [
+            FrameNode("P-0", x=x, y=0.0, support="pinned"),
+            FrameNode("P-1", x=x, y=3.0, moves_with="N-1-1"),
+        ]
+        behind = rbsdem.frames.Member("P", "P-0", "P-1", kind)
+        frame = rbsdem.Frame.grid([3.0], columns=kind, nodes=nodes, members=[behind])
+        return float(rbsdem.pushover(frame, force=1e5, points=1).displacement[-1])
+
+    assert moved(0.0) == pytest.approx(moved(5.0), rel=1e-12)
+
+
 COLUMN = RectangularSection(
     0.5, 0.5, Concrete(30e6), layout=rbsdem.Layout(12, 0.02, BARS),
     ties=rbsdem.Ties(0.01, 0.1, MESH, legs=4), cover=0.03,

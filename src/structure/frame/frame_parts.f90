@@ -666,8 +666,9 @@ contains
             ! Nodes of the grid are apart.
             do j = 1, merge(i - 1, 0, i > self%grid_nodes)
                if (hypot(node%x - self%node(j)%x, node%y - self%node(j)%y) > near) cycle
-               ! A hinge between two parts
+               ! A hinge between two parts, or the feet of parts that stand behind each other
                if (leader_of(self, i) == leader_of(self, j)) cycle
+               if (all(node%held(:2)) .and. all(self%node(j)%held(:2))) cycle
                call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
                                  ' are at one place; move one of them, use one in place of both, or '// &
                                  'tie them by moves_with')
