@@ -93,7 +93,11 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
         elif value is None:
             continue
         elif isinstance(value, str):
-            text = _arguments.one_line(value) if isinstance(value, Text) else word(value)
+            text: str = value
+            if not isinstance(value, Text):
+                text = word(value)
+            elif not value.isprintable():
+                text = _arguments.one_line(value)
             words.append(f"{key}={text}")
         elif isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.ndim):
             kinds = set(map(type, value))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
@@ -334,6 +335,8 @@ class FrameSpring(NamedTuple):
         In shares of the clear length of the member; 0 in a panel.
     stiffness : float
         The initial one [N m/rad or N/m].
+    end : str
+        "start", "end", or the place between them; "" in a panel.
     """
 
     member: str
@@ -341,6 +344,28 @@ class FrameSpring(NamedTuple):
     rule: str
     position: float
     stiffness: float
+    end: str
+
+
+class Place(NamedTuple):
+    """Where a member of the grid stands.
+
+    Attributes
+    ----------
+    kind : str
+        "column" or "beam".
+    line, storey : int
+        Its line, of a beam its bay, and its storey, from 1.
+    """
+
+    kind: Literal["column", "beam"]
+    line: int
+    storey: int
+
+    @property
+    def name(self) -> str:
+        """Name of the member."""
+        return f"{'C' if self.kind == 'column' else 'B'}-{self.line}-{self.storey}"
 
 
 @dataclass(frozen=True)
@@ -504,8 +529,19 @@ def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
             numbers.append(outer if given == "outer" else list(range(2, lines)))
         else:
             several = given if isinstance(given, (tuple, range)) else (given,)
-            numbers.append([_arguments.integer(one, f"frame: {name}") for one in several])
+            numbers.append(
+                [
+                    one if type(one) is int else _arguments.integer(one, f"frame: {name}")
+                    for one in several
+                ]
+            )
     return [(at, storey) for storey in numbers[1] for at in numbers[0]]
+
+
+def at_place(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
+    """Return what stands in a place of a grid: the last cell that fits, None without one."""
+    found = [one for (at, level), one in cells.items() if at in (0, i) and level in (0, k)]
+    return found[-1] if found else None
 
 
 def cells_of(
@@ -572,7 +608,7 @@ def with_rigid_end(kind: FrameMember, rigid_end: float | tuple[float, float]) ->
     """Return a kind of members with other rigid lengths in its nodes."""
     if kind.rigid_end == rigid_end:
         return kind
-    values = {own.name: getattr(kind, own.name) for own in fields(kind)}
-    for name in ("flexure", "shear"):
-        values[name] = dict(values[name]) if values[name] else None
-    return FrameMember(**values | {"rigid_end": rigid_end})
+    # Its other fields are checked already.
+    other = copy(kind)
+    object.__setattr__(other, "rigid_end", rigid_end)
+    return other

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
 
 import numpy as np
@@ -692,6 +692,25 @@ class Layered(Spring):
                 number = known[id(spring)] = ids.setdefault(spring, len(ids) + 1)
             numbers.append(number)
         return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": numbers})
+
+    @cached_property
+    def points(self) -> list[tuple[float, list[Landmark]]]:
+        """Where layers yield in tension, and outer layers of concrete spall, by their places."""
+        outer = min(y for y, _ in self.layers), max(y for y, _ in self.layers)
+        known: dict[int, list[Landmark]] = {}
+        found = []
+        for y, layer in self.layers:
+            if isinstance(layer, ConcreteSpring) and y in outer:
+                gone = layer.d_peak + (layer.f_peak - layer.f_res) / layer.k_soft
+                points = [Landmark("spalling", -1, gone, "d_peak + (f_peak - f_res)/k_soft")]
+            else:
+                if id(layer) not in known:
+                    marks = layer.landmarks()
+                    known[id(layer)] = [m for m in marks if m.name == "yield" and m.side > 0]
+                points = known[id(layer)]
+            if points:
+                found.append((y, points))
+        return found
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs in series: the layers are split and keep their places."""

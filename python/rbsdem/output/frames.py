@@ -503,7 +503,7 @@ def deformed(
     """
     nodes = [member.start, member.end]
     turn = result.node_rotation[row][..., nodes]
-    if abs(member.axis[0]) > abs(member.axis[1]):
+    if turns.panels and abs(member.axis[0]) > abs(member.axis[1]):
         # Rotations of nodes are those of their columns.
         names, still = result.frame.parts.nodes, np.zeros(np.shape(row))
         beside = [turns.panels.get(names[node], still) for node in nodes]

@@ -16,7 +16,7 @@ from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
 from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of, parabola
-from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
+from rbsdem.model.springs import Landmark, LandmarkName
 from rbsdem.run.limit_states import LimitState, LimitStates
 from rbsdem.run.rows import Rows
 from rbsdem.section.frame import Frame
@@ -246,7 +246,7 @@ class FrameResult(Rows):
             lean = self.frame.parts.compression[at] * self._chord(one)
         found = []
         for j, sign in enumerate((1.0, -1.0)):
-            across = -sign * (one.shear(*ends, float(j)) + lean)
+            across = -sign * (self.end_shear[:, at, j] + lean)
             # The load of the rigid length is carried by the node.
             node = (
                 self.member_axial[:, at, None] * (-sign * one.axis) + across[:, None] * one.normal
@@ -385,51 +385,47 @@ class FrameResult(Rows):
         InputError
             If there is no such member; the message names the nearest.
         """
-        parts = self.frame.parts
-        at = index_of(name, parts.members, "member")
-        springs, deformation, force, ductility = [], [], [], []
-        for spring, values, forces in self._springs:
-            if spring.member != name or spring.group == "panel":
-                continue
-            springs.append(spring)
-            deformation.append(values)
-            force.append(forces)
-        path = self._measured
-        for spring, values, _ in path._springs:
-            if spring.member != name or spring.group == "panel":
-                continue
-            kept = values[: path._lost_at().get(name)]
-            points = [*self.frame.landmarks[spring]]
-            points += [point for point, _ in path._yields(spring, kept)]
-            yields = [point.deformation for point in points if point.name == "yield"]
+        at = index_of(name, self.frame.parts.members, "member")
+        numbers, tracks = self._springs_in.get(name, []), self._springs
+        deformation = [tracks[i][1] for i in numbers]
+        path, ductility = self._measured, []
+        for i in numbers:
+            kept = path._springs[i][1][: path._lost_at.get(name)]
+            yields = [one.deformation for one, _ in path._reached[i] if one.name == "yield"]
             largest = float(np.abs(kept).max(initial=0.0))
             ductility.append(largest / min(yields) if yields else np.nan)
-        ends, where = (self.moment_from[:, at], self.moment_to[:, at]), self.frame.geometry[name]
         rows = (self.time.size, 0)
         return MemberHistory(
             name,
             self.member_axial[:, at],
-            np.column_stack(ends),
-            np.column_stack([where.shear(*ends, share) for share in (0.0, 1.0)]),
+            np.column_stack((self.moment_from[:, at], self.moment_to[:, at])),
+            self.end_shear[:, at],
             self.chord_rotation[:, at],
-            self._plastic(at, self.chord_rotation[:, at]),
-            where,
-            tuple(springs),
-            np.column_stack(deformation) if springs else np.empty(rows),
-            np.column_stack(force) if springs else np.empty(rows),
+            self._plastic(name, self.chord_rotation[:, at]),
+            self.frame.geometry[name],
+            tuple(tracks[i][0] for i in numbers),
+            np.column_stack(deformation) if numbers else np.empty(rows),
+            np.column_stack([tracks[i][2] for i in numbers]) if numbers else np.empty(rows),
             np.array(ductility),
         )
 
-    def _plastic(self, at: int, turned: Array) -> Array:
+    @cached_property
+    def end_shear(self) -> Array:
+        """Shear forces at the ends of members, shape (rows, members, 2) [N]."""
+        where = self.frame.geometry.values()
+        clear, load = np.array([(one.clear, one.across_load) for one in where]).T
+        sway = (self.moment_from + self.moment_to) / clear
+        return np.asarray(np.stack([sway + load * clear * s for s in (-0.5, 0.5)], axis=2))
+
+    def _plastic(self, name: str, turned: Array) -> Array:
         """Return rotations beyond those at the first yield of an end to each side."""
         found, path = np.zeros_like(turned), self._measured
-        for spring, values, _ in path._springs:
-            at_end = spring.position in (0.0, 1.0)
-            name = self.frame.parts.members[at]
-            if (spring.member, spring.group, at_end) != (name, "flexure", True):
+        at = self.frame.parts.members.index(name)
+        for i in self._springs_in.get(name, []):
+            spring = path._springs[i][0]
+            if spring.group != "flexure" or spring.position not in (0.0, 1.0):
                 continue
-            points = [(one, path._reached(one, values)) for one in self.frame.landmarks[spring]]
-            for point, row in [*points, *path._yields(spring, values)]:
+            for point, row in path._reached[i]:
                 if point.name == "yield" and row is not None:
                     end = int(spring.position)
                     first = _at(row, path.chord_rotation[:, at, end])
@@ -455,60 +451,37 @@ class FrameResult(Rows):
             for i, spring in enumerate(self.frame.parts.springs_of(group))
         ]
 
-    @staticmethod
-    def _reached(point: Landmark, values: Array) -> float | None:
-        """Return where a deformation first reaches a landmark: a row, or between two the share."""
-        beyond = point.side * values / point.deformation
-        rows = np.flatnonzero(beyond >= _REACHED)
-        if not rows.size:
-            return None
-        row = int(rows[0])
-        # A path stands on it in its corner.
-        if not row or beyond[row] <= 2.0 - _REACHED:
-            return float(row)
-        before, there = beyond[row - 1 : row + 1].tolist()
-        return float(row - (there - 1.0) / (there - before))
+    @cached_property
+    def _springs_in(self) -> dict[str, list[int]]:
+        """Numbers of the springs of each member in that list."""
+        found: dict[str, list[int]] = {}
+        for i, (spring, _, _) in enumerate(self._springs):
+            if spring.group != "panel":
+                found.setdefault(spring.member, []).append(i)
+        return found
 
     @cached_property
-    def _of_layers(self) -> dict[int, list[tuple[float, list[Landmark]]]]:
-        """Landmarks of the layers of joints that were asked for, by the identity of the joint."""
-        return {}
+    def _reached(self) -> list[list[tuple[Landmark, float | None]]]:
+        """Landmarks of each spring of that list, and where they are reached first.
 
-    @cached_property
-    def _openings(self) -> dict[tuple[str, float], Array]:
-        """Openings of joints of layers, by member and position."""
-        joints = self.frame.parts.springs_of("axial_spring")
-        return {
-            (one.member, one.position): self.springs["opening"][:, i]
-            for i, one in enumerate(joints)
-            if one.rule == "layered"
+        In a row, or between two with the share of the way; None if they are not, or only by a
+        member that is lost.
+        """
+        openings = {
+            (spring.member, spring.position): values
+            for spring, values, _ in self._springs
+            if spring.rule == "layered" and spring.group == "axial_spring"
         }
-
-    def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, float | None]]:
-        """Return where layers of a joint yield in tension and spall, for each way that it turns."""
-        made = (
-            self.frame.kinds[spring.member].at(spring.group, spring.position)
-            if spring.rule == "layered" and spring.group == "flexure"
-            else None
-        )
-        if not isinstance(made, Layered):
-            return []
-        opening = self._openings[spring.member, spring.position][: rotation.size]
-        first: dict[tuple[LandmarkName, Literal[1, -1]], float] = {}
-        # Equal members share their joints.
-        if id(made) not in self._of_layers:
-            self._of_layers[id(made)] = _points_of_layers(made)
-        for y, points in self._of_layers[id(made)]:
-            for point in points:
-                row = self._reached(point, opening + y * rotation)
-                if row is not None:
-                    side: Literal[1, -1] = 1 if _at(row, rotation) >= 0 else -1
-                    key = point.name, side
-                    first[key] = min(first.get(key, row), row)
-        return [
-            (Landmark(name, side, abs(_at(row, rotation)), "first layer"), row)
-            for (name, side), row in first.items()
-        ]
+        joints, landmarks, lost = self.frame.joints, self.frame.landmarks, self._lost_at
+        found = []
+        for spring, whole, _ in self._springs:
+            values = whole[: lost.get(spring.member)]
+            reached = [(point, _first_row(point, values)) for point in landmarks[spring]]
+            if spring in joints:
+                opening = openings[spring.member, spring.position][: values.size]
+                reached += _rows_of_layers(joints[spring].points, opening, values)
+            found.append(reached)
+        return found
 
     @cached_property
     def events(self) -> LimitStates:
@@ -522,39 +495,36 @@ class FrameResult(Rows):
         """
         path = self._measured
         found = path._found_events()
-        times = np.array([at for _, at, _ in found])
-        rows = np.searchsorted(self.time, times - 1e-12 * np.abs(times))
-        rows = np.minimum(rows, self.time.size - 1)
+        times, own_times, kept = np.array([at for _, at, _ in found]), path.time, self.time
+        rows = np.searchsorted(kept, times - 1e-12 * np.abs(times))
+        rows = np.minimum(rows, kept.size - 1)
         columns = (path.displacement, path.drift, path.loop_force)
-        there = zip(*(np.interp(times, path.time, each).tolist() for each in columns), strict=True)
+        there = zip(*(np.interp(times, own_times, each).tolist() for each in columns), strict=True)
         return LimitStates(
-            (
+            [
                 LimitState(name, row, at, *values, **where)
                 for (name, at, where), row, values in zip(found, rows.tolist(), there, strict=True)
-            ),
+            ],
             self,
         )
 
     def _found_events(self) -> list[tuple[str, float, dict[str, Any]]]:
         """Return name, time and place of the limit states that the rows reach."""
         found: list[tuple[str, float, dict[str, Any]]] = []
-        for spring, whole, _ in self._springs:
-            # A lost member moves on without reaching anything.
-            values = whole[: self._lost_at().get(spring.member)]
-            points = [
-                (point, self._reached(point, values)) for point in self.frame.landmarks[spring]
-            ]
-            end = {0.0: "start", 1.0: "end"}.get(spring.position, f"{spring.position:g}")
-            group = "infill" if spring.member in self.frame.struts else spring.group
-            where = {"member": spring.member, "group": group}
-            where["end"] = "" if group in ("panel", "infill") else end
+        times, struts = self.time, self.frame.struts
+        for (spring, _, _), reached in zip(self._springs, self._reached, strict=True):
+            rows = [(point, row) for point, row in reached if row is not None]
+            if not rows:
+                continue
+            group = "infill" if spring.member in struts else spring.group
+            end = "" if group == "infill" else spring.end
+            where = {"member": spring.member, "group": group, "end": end}
             found += [
-                (_event_name(spring, point), _at(row, self.time), where | {"side": point.side})
-                for point, row in [*points, *self._yields(spring, values)]
-                if row is not None
+                (_event_name(spring, point), _at(row, times), where | {"side": point.side})
+                for point, row in rows
             ]
         sheared = {where["member"]: at for what, at, where in reversed(found) if what == FAILS}
-        wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at().items()]
+        wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at.items()]
         # A member whose spring fails in shear is told by that.
         wholes += [
             (name, what, at)
@@ -578,30 +548,29 @@ class FrameResult(Rows):
 
     def _failures(self) -> list[tuple[str, str, float]]:
         """Return members that fail in shear, and that lose their axial load on a static path."""
-        parts, found, lost = self.frame.parts, [], self._lost_at()
-        for at, name in enumerate(parts.members):
-            kind = self.frame.kinds[name]
+        found, lost, times, landmarks = [], self._lost_at, self.time, self.frame.landmarks
+        for at, (name, kind) in enumerate(self.frame.kinds.items()):
             if kind.failure_drift is None or kind.failure_load is None:
                 continue
             drift = np.abs(self._chord(self.frame.geometry[name]))
             failed = drift >= (np.inf if kind.shear_drift is None else kind.shear_drift)
-            for spring, values, _ in self._springs:
-                if spring.member == name and spring.group == "shear":
-                    for point in self.frame.landmarks[spring]:
-                        if point.name == "yield":
-                            failed |= point.side * values >= _REACHED * point.deformation
+            for spring, values, _ in (self._springs[i] for i in self._springs_in.get(name, [])):
+                for point in landmarks[spring] if spring.group == "shear" else ():
+                    if point.name == "yield":
+                        failed |= point.side * values >= _REACHED * point.deformation
             rows = np.flatnonzero(failed[: lost.get(name)])
             if rows.size:
-                found.append((name, FAILS, float(self.time[rows[0]])))
+                found.append((name, FAILS, float(times[rows[0]])))
             load = np.maximum(self.member_axial[:, at], 0.0)
             falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= kind.failure_drift)
             fallen = np.flatnonzero(falls & np.logical_or.accumulate(failed))
             if fallen.size and not self.dynamic:
-                found.append((name, "lost", float(self.time[fallen[0]])))
+                found.append((name, "lost", float(times[fallen[0]])))
         return found
 
+    @cached_property
     def _lost_at(self) -> dict[str, int]:
-        """Return members that are lost, and the first row in which they are."""
+        """Members that are lost, and the first row in which they are."""
         if self.lost is None:
             return {}
         return {
@@ -627,19 +596,36 @@ class FrameResult(Rows):
         )
 
 
-def _points_of_layers(made: Layered) -> list[tuple[float, list[Landmark]]]:
-    """Return where layers yield in tension, and outer layers of concrete spall, by their places."""
-    outer = min(y for y, _ in made.layers), max(y for y, _ in made.layers)
-    found = []
-    for y, layer in made.layers:
-        if isinstance(layer, ConcreteSpring) and y in outer:
-            gone = layer.d_peak + (layer.f_peak - layer.f_res) / layer.k_soft
-            points = [Landmark("spalling", -1, gone, "d_peak + (f_peak - f_res)/k_soft")]
-        else:
-            points = [one for one in layer.landmarks() if one.name == "yield" and one.side > 0]
-        if points:
-            found.append((y, points))
-    return found
+def _first_row(point: Landmark, values: Array) -> float | None:
+    """Return where a deformation first reaches a landmark: a row, or between two the share."""
+    beyond = point.side * values / point.deformation
+    rows = np.flatnonzero(beyond >= _REACHED)
+    if not rows.size:
+        return None
+    row = int(rows[0])
+    # A path stands on it in its corner.
+    if not row or beyond[row] <= 2.0 - _REACHED:
+        return float(row)
+    before, there = beyond[row - 1 : row + 1].tolist()
+    return float(row - (there - 1.0) / (there - before))
+
+
+def _rows_of_layers(
+    points: list[tuple[float, list[Landmark]]], opening: Array, rotation: Array
+) -> list[tuple[Landmark, float | None]]:
+    """Return where layers of a joint yield in tension and spall, for each way that it turns."""
+    first: dict[tuple[LandmarkName, Literal[1, -1]], float] = {}
+    for y, marks in points:
+        for point in marks:
+            row = _first_row(point, opening + y * rotation)
+            if row is not None:
+                side: Literal[1, -1] = 1 if _at(row, rotation) >= 0 else -1
+                key = point.name, side
+                first[key] = min(first.get(key, row), row)
+    return [
+        (Landmark(name, side, abs(_at(row, rotation)), "first layer"), row)
+        for (name, side), row in first.items()
+    ]
 
 
 def _at(row: float, values: Array) -> float:
@@ -699,11 +685,11 @@ def shear_span_note(result: FrameResult) -> str:
     wall a tenth: the joint at its foot is for that M/V too.
     """
     frame, found = result.frame, []
-    for name, kind in frame.kinds.items():
-        springs = dict(kind._springs("shear"))
+    moments = np.stack((result.moment_from, result.moment_to), axis=2)
+    for at, (name, kind) in enumerate(frame.kinds.items()):
         if kind.shear_spans is None:
             continue
-        member = result.member(name)
+        springs = dict(kind.shear or ())  # type: ignore[arg-type]
         walls = kind.sections is not None and kind.sections[0].shape == "wall"
         for j, (end, position) in enumerate((("start", 0.0), ("end", 1.0))):
             spring: Any = springs.get(position)
@@ -711,10 +697,10 @@ def shear_span_note(result: FrameResult) -> str:
                 continue
             # Forces of springs are positive with y > 0 in tension at the start of a member.
             for side, made in zip((2 * j - 1, 1 - 2 * j), kind.shear_spans[j], strict=True):
-                shear = side * member.shear[:, j]
+                shear = side * result.end_shear[:, at, j]
                 row = int(shear.argmax())
                 strength = spring.f_y if side < 0 else getattr(spring, "f_y_neg", None)
-                span = side * float(member.moment[row, j]) / float(shear[row] or 1.0)
+                span = side * float(moments[row, at, j]) / float(shear[row] or 1.0)
                 telling = _TELLING_OF_WALLS if walls else _TELLING
                 if shear[row] > telling * (strength or spring.f_y) and span > 0:
                     off = span / made
@@ -744,7 +730,7 @@ def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
     turned = [
         point.side * point.deformation for point in frame.landmarks[spring] if point.name == "yield"
     ]
-    own = frame.kinds[spring.member].at(spring.group, spring.position)
+    own = frame.given_springs[spring]
     if not turned:
         return np.inf
     if own is None:

@@ -231,7 +231,7 @@ class Rows(_Channels):
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out the path and channels by name: they are found again."""
-        left_out = {"_path", "_springs", "_openings", "_of_layers", *self.channels, *_OPTIONAL}
+        left_out = {"_path", "_springs", "_springs_in", "_reached", *self.channels, *_OPTIONAL}
         return {name: value for name, value in vars(self).items() if name not in left_out}
 
     @property

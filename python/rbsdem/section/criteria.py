@@ -147,10 +147,9 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
 def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
     """Yield where layers yield in tension; they are numbered behind the rotational springs."""
     for own in springs:
-        if own.rule != "layered":
+        made = frame.joints.get(own)
+        if made is None:
             continue
-        made = frame.kinds[own.member].at(own.group, own.position)
-        assert isinstance(made, Layered)
         places: dict[Spring, list[float]] = {}
         for y, layer in made.layers:
             places.setdefault(layer, []).append(y)

@@ -21,7 +21,9 @@ from rbsdem.model.frame import (
     FrameSpring,
     Member,
     MemberGeometry,
+    Place,
     Span,
+    at_place,
     cells_of,
     index_of,
     names_of,
@@ -47,6 +49,8 @@ from rbsdem.section.grid import (
 )
 from rbsdem.section.infill import INFILL_NOTE, Infill, InfilledBay
 from rbsdem.section.parameters import VERSION
+
+_ENDS = {0.0: "start", 1.0: "end"}
 
 #: Scope of the results of a frame, printed with them.
 SCOPE_NOTE = (
@@ -236,11 +240,11 @@ class Frame:
     def geometry(self) -> dict[str, MemberGeometry]:
         """Where each member is, by its name, in the order of the columns of a result."""
         parts, own = self.parts, {member.name: member for member in self.members}
-        nodes, found = np.column_stack((parts.x, parts.y)), {}
+        nodes, found, places = np.column_stack((parts.x, parts.y)), {}, self.places
         for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
             rigid: Any = (own.get(name) or self.kinds[name]).rigid_end
             if not isinstance(rigid, tuple):
-                foot = name.startswith("C") and name.endswith("-1")
+                foot = places[name].kind == "column" and places[name].storey == 1
                 rigid = (0.0 if foot else rigid, rigid)
             length = float(np.hypot(*(nodes[end] - nodes[start])))
             axis = (nodes[end] - nodes[start]) / length
@@ -303,12 +307,8 @@ class Frame:
     @property
     def joint_numbers(self) -> range:
         """Numbers of the springs in members, from 1, as limit states know them, layers last."""
-        made = (self.kinds[own.member].at("flexure", own.position) for own in self._joints())
-        layers = sum(len(one.layers) for one in made if isinstance(one, Layered))
+        layers = sum(len(joint.layers) for joint in self.joints.values())
         return range(1, len(self.parts.springs) + layers + 1)
-
-    def _joints(self) -> list[FrameSpring]:
-        return [own for own in self.parts.springs_of("flexure") if own.rule == "layered"]
 
     @property
     def damped(self) -> bool:
@@ -316,22 +316,26 @@ class Frame:
         return isinstance(self.damping, Damping) and self.damping.acts
 
     @cached_property
+    def places(self) -> dict[str, Place]:
+        """Where the members of the grid stand, by their names."""
+        own = {member.name for member in self.members}
+        lines = range(1, len(self.bays or ()) + 2)  # type: ignore[arg-type]
+        levels = range(1, len(self.storeys or ()) + 1)  # type: ignore[arg-type]
+        grid = [Place("column", i, k) for k in levels for i in lines]
+        grid += [Place("beam", i, k) for k in levels for i in lines[:-1]]
+        there = set(self.parts.members) - own
+        return {place.name: place for place in grid if place.name in there}
+
+    @cached_property
     def kinds(self) -> dict[str, FrameMember]:
         """Kinds of the members by their names, in the order of the columns of a result."""
         own = {member.name: member.kind for member in self.members}
-        return {name: own.get(name) or self._kind_in_grid(name) for name in self.parts.members}
-
-    def _kind_in_grid(self, member: str) -> FrameMember:
-        letter, line, storey = member.split("-")
-        cells = self.columns if letter == "C" else self.beams
-        found = [
-            kind
-            for (at, level), kind in (cells or {}).items()  # type: ignore[union-attr]
-            if at in (0, int(line)) and level in (0, int(storey))
-        ]
-        kind = found[-1]
-        assert kind is not None, member
-        return kind
+        cells: Any = {"column": self.columns or {}, "beam": self.beams or {}}
+        own |= {
+            name: at_place(cells[place.kind], place.line, place.storey)
+            for name, place in self.places.items()
+        }
+        return {name: own[name] for name in self.parts.members}
 
     @cached_property
     def struts(self) -> dict[str, Any]:
@@ -339,27 +343,57 @@ class Frame:
         return {name: bay for bay in self.infilled for name in bay.struts}
 
     @cached_property
+    def given_springs(self) -> dict[FrameSpring, Spring | None]:
+        """What was given at the place of each spring: of a joint of layers the joint."""
+        panels = {node.name: node.panel for node in self.nodes}
+        # Equal members are of one kind.
+        known: dict[int, dict[tuple[str, float], Spring]] = {}
+        found: dict[FrameSpring, Spring | None] = {}
+        for spring in self.parts.springs:
+            if spring.group == "panel":
+                found[spring] = panels.get(spring.member) or self.panel
+                continue
+            kind: Any = self.kinds[spring.member]
+            if id(kind) not in known:
+                known[id(kind)] = {
+                    (group, position): own
+                    for group in ("flexure", "shear")
+                    for position, own in getattr(kind, group) or ()
+                }
+            group = "flexure" if spring.rule == "layered" else spring.group
+            otherwise = kind.axial_spring if group == "axial_spring" else None
+            found[spring] = known[id(kind)].get((group, spring.position), otherwise)
+        return found
+
+    @cached_property
+    def joints(self) -> dict[FrameSpring, Layered]:
+        """Flexural springs that are joints of layers, with these."""
+        return {
+            spring: made
+            for spring, made in self.given_springs.items()
+            if isinstance(made, Layered) and spring.group == "flexure"
+        }
+
+    @cached_property
     def landmarks(self) -> dict[FrameSpring, list[Landmark]]:
         """Cracking, yield and cap of each spring, first time on the virgin curve."""
-        return {spring: self._landmarks_of(spring) for spring in self.parts.springs}
-
-    def _landmarks_of(self, spring: FrameSpring) -> list[Landmark]:
-        if spring.group == "panel":
-            own = {node.name: node.panel for node in self.nodes}
-            panel = own.get(spring.member) or self.panel
-            return [] if panel is None else panel.landmarks()
-        if spring.member in self.struts:
-            marks: list[Landmark] = self.struts[spring.member].landmarks()
-            return marks
-        kind = self.kinds[spring.member]
-        if kind.yield_moment is not None:
-            if spring.group != "flexure":
-                return []
-            turned = kind.yield_moment / spring.stiffness
-            sides: tuple[Literal[1, -1], ...] = (1, -1)
-            return [Landmark("yield", side, turned, "yield_moment") for side in sides]
-        made = None if spring.rule == "layered" else kind.at(spring.group, spring.position)
-        return [] if made is None else made.landmarks()
+        known: dict[int, list[Landmark]] = {}
+        found: dict[FrameSpring, list[Landmark]] = {}
+        sides: tuple[Literal[1, -1], ...] = (1, -1)
+        for spring, made in self.given_springs.items():
+            if spring.member in self.struts:
+                found[spring] = self.struts[spring.member].landmarks()
+                continue
+            kind = None if spring.group == "panel" else self.kinds[spring.member]
+            if kind is not None and kind.yield_moment is not None:
+                turned = kind.yield_moment / spring.stiffness
+                yields = [Landmark("yield", side, turned, "yield_moment") for side in sides]
+                found[spring] = yields if spring.group == "flexure" else []
+                continue
+            if made is not None and spring.rule != "layered" and id(made) not in known:
+                known[id(made)] = made.landmarks()
+            found[spring] = known.get(id(made), [])
+        return found
 
     def without(self, *members: str) -> Self:
         """Return the frame after the loss of members.
@@ -374,15 +408,15 @@ class Frame:
         InputError
             If there is no such member, or a node is left without one.
         """
-        cells = {"C": dict(self.columns or {}), "B": dict(self.beams or {})}  # type: ignore[arg-type]
+        cells: Any = {"column": dict(self.columns or {}), "beam": dict(self.beams or {})}  # type: ignore[arg-type]
         own = {member.name: member for member in self.members}
         for name in members:
             index_of(name, self.parts.members, "member")
             if own.pop(name, None) is None:
-                letter, line, storey = name.split("-")
-                cells[letter].pop((int(line), int(storey)), None)
-                cells[letter][int(line), int(storey)] = None
-        columns, beams = (cells[letter] or None for letter in "CB")
+                kind, *at = self.places[name]
+                cells[kind].pop(tuple(at), None)
+                cells[kind][tuple(at)] = None
+        columns, beams = (own_cells or None for own_cells in cells.values())
         return replace(self, columns=columns, beams=beams, members=tuple(own.values()))
 
     @cached_property
@@ -442,10 +476,10 @@ class Frame:
         for own in self.members:
             if own.name == member:
                 return own.load
-        if member.startswith("C"):
+        place, loads = self.places[member], self.beam_load
+        if place.kind == "column":
             return 0.0
-        loads: Any = self.beam_load
-        return float(loads[min(int(member.split("-")[2]), len(loads)) - 1])
+        return float(loads[min(place.storey, len(loads)) - 1])  # type: ignore[arg-type, index]
 
     def _state(
         self,
@@ -719,7 +753,8 @@ class Frame:
 
 def _spring_of(text: str, position: float, stiffness: float) -> FrameSpring:
     member, group, rule = text.rsplit(" ", 2)
-    return FrameSpring(member, group, rule, position, stiffness)
+    end = "" if group == "panel" else _ENDS.get(position, f"{position:g}")
+    return FrameSpring(member, group, rule, position, stiffness, end)
 
 
 #: Structures that analyses take.

@@ -14,7 +14,16 @@ from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array
 from rbsdem.errors import InputError, warn
-from rbsdem.model.frame import FrameMember, FrameNode, Member, cells_of, places_of, with_rigid_end
+from rbsdem.model.frame import (
+    FrameMember,
+    FrameNode,
+    Member,
+    Place,
+    at_place,
+    cells_of,
+    places_of,
+    with_rigid_end,
+)
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
 from rbsdem.model.wall import WallSection
@@ -224,9 +233,12 @@ class Grid:
         self.check_places("columns", columns, len(bays) + 1)
         self.check_places("beams", beams, len(bays))
         lines, levels = range(1, len(bays) + 2), range(1, len(storeys) + 1)
-        self.columns = {(i, k): _at(columns, i, k) for k in levels for i in lines}
-        self.beams = {(i, k): _at(beams, i, k) for k in levels for i in lines[:-1]}
+        self.columns = {(i, k): at_place(columns, i, k) for k in levels for i in lines}
+        self.beams = {(i, k): at_place(beams, i, k) for k in levels for i in lines[:-1]}
         self.kinds: tuple[dict[Any, FrameMember | None], ...] = ({}, {})
+        #: Members of the gross sections, by the identity of what stands in places.
+        different = {id(one): one for one in self.all_cells()}
+        self.elastic = {key: _elastic_kind(one) for key, one in different.items()}
 
     def check_places(self, name: str, cells: Mapping[tuple[int, int], Any], lines: int) -> None:
         """Refuse places that the grid does not have."""
@@ -275,7 +287,7 @@ class Grid:
         """Return the weight of the beams of each floor, of their mean section [N/m]."""
         found = []
         for k in range(len(self.storeys)):
-            own = [_area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
+            own = [self._area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
             found.append(CONCRETE_WEIGHT * float(np.dot(own, self.bays)) / max(sum(self.bays), 1.0))
         return np.array(found)
 
@@ -283,14 +295,14 @@ class Grid:
         """Return the weights on the nodes of floors [N]: walls, and halves of the columns."""
         found = {}
         for i, k in self.columns:
-            weight = _at(walls, i, k) or 0.0
+            weight = at_place(walls, i, k) or 0.0
             if heavy:
                 above = self.columns.get((i, k + 1))
                 for one, height in (
                     (self.columns[i, k], self.storeys[k - 1]),
                     (above, self.storeys[k] if above is not None else 0.0),
                 ):
-                    weight += 0.5 * CONCRETE_WEIGHT * _area(one) * height
+                    weight += 0.5 * CONCRETE_WEIGHT * self._area(one) * height
             if weight:
                 found[f"N-{i}-{k}"] = weight
         return found
@@ -298,7 +310,7 @@ class Grid:
     def members(self, cls: Any, drawing: FrameDrawing, more: dict[str, Any]) -> list[Any]:
         """Return the kinds of all columns and beams."""
         elastic = [
-            {at: _elastic_kind(one) for at, one in cells.items()}
+            {at: self.elastic.get(id(one)) for at, one in cells.items()}
             for cells in (self.columns, self.beams)
         ]
         given = {key: value for key, value in more.items() if key != "losses"}
@@ -308,7 +320,7 @@ class Grid:
         )  # fmt: skip
         axial = dict(zip(standing.parts.members, standing.parts.compression.tolist(), strict=True))
         load = {
-            at: _rounded(self.columns[at], axial.get(f"C-{at[0]}-{at[1]}", 0.0))
+            at: self._rounded(self.columns[at], axial.get(Place("column", *at).name, 0.0))
             for at in self.columns
         }
         rigid = {
@@ -332,11 +344,23 @@ class Grid:
                 columns[i, k] = walls[i, k]
                 continue
             place = self.storeys[k - 1], ends["columns"][i, k], load[i, k], 0.0
-            columns[i, k] = _kind(one, *place, f"C-{i}-{k}", spans.get((i, k)))
+            columns[i, k] = _kind(one, *place, Place("column", i, k).name, spans.get((i, k)))
         for (i, k), one in self.beams.items():
             place = self.bays[i - 1], ends["beams"][i, k], 0.0, float(loads[k - 1])
-            beams[i, k] = _kind(one, *place, f"B-{i}-{k}")
+            beams[i, k] = _kind(one, *place, Place("beam", i, k).name)
         return list(self.kinds)
+
+    def _area(self, one: Any) -> float:
+        """Return the area of the mean section of a member; 0 of one by hand [m2]."""
+        kind = self.elastic.get(id(one))
+        return kind.area if kind is not None and is_drawn(one) else 0.0
+
+    def _rounded(self, one: Any, load: float) -> float:
+        """Return an axial load in steps of a part of f'c A_g; a column in tension has none."""
+        if not is_drawn(one):
+            return load
+        step = _STEP * self._area(one) * halves_of(one)[0].concrete.fc
+        return max(round(load / step), 1) * step if load > 0 else 0.0
 
     def note_on_bars(self, beam_load: Any) -> None:
         """Tell of loaded beams with more bars below than above at their ends, which hog."""
@@ -346,7 +370,7 @@ class Grid:
                 continue
             for part in halves_of(one):
                 if part.mirrored.tension_steel > _MORE_BELOW * part.tension_steel:
-                    found.append(f"B-{i}-{k}")
+                    found.append(Place("beam", i, k).name)
         if found:
             names = list(dict.fromkeys(found))
             more = f" and {len(names) - 1} more" if len(names) > 1 else ""
@@ -406,7 +430,7 @@ class Grid:
     def _to_axis(self, i: int, k: int, bay: int) -> float:
         """Return the moment of a beam at the axis of a wall over that at its face; else 1."""
         arms = [
-            0.5 * wall.length if (wall := self.wall_at(line, k)) else 0.0
+            0.5 * wall.length if (wall := self.wallat_place(line, k)) else 0.0
             for line in (i, bay + 1 if bay == i else bay)
         ]
         return 1.0 + 2.0 * arms[0] / max(self.bays[bay - 1] - sum(arms), 1e-3)
@@ -448,7 +472,7 @@ class Grid:
                 runs.append((k, k))
         return runs
 
-    def wall_at(self, i: int, k: int) -> WallSection | None:
+    def wallat_place(self, i: int, k: int) -> WallSection | None:
         """Return the longer wall that goes through a node."""
         walls = [self.columns.get((i, level)) for level in (k, k + 1)]
         own = [one for one in walls if isinstance(one, WallSection)]
@@ -465,7 +489,7 @@ class Grid:
                         "or give 0 for all"
                     )
         for (i, k), beam in self.beams.items():
-            infill = _at(cells, i, k)
+            infill = at_place(cells, i, k)
             if infill is None:
                 continue
             where = f"frame: the infill in bay {i}, storey {k}"
@@ -502,7 +526,7 @@ class Grid:
         left, right = self.beams.get((i - 1, k)), self.beams.get((i, k))
         beams = [halves_of(left)[1]] if is_drawn(left) else []
         beams += [halves_of(right)[0]] if is_drawn(right) else []
-        wall = self.wall_at(i, k)
+        wall = self.wallat_place(i, k)
         if wall is not None:
             # It goes on through the floor, and beams reach its face.
             return 0.0, 0.5 * wall.length
@@ -527,7 +551,7 @@ class Grid:
             columns, beams = (
                 [one for one in several if is_drawn(one)] for several in self.around(i, k)
             )
-            if not columns or not beams or self.wall_at(i, k) is not None:
+            if not columns or not beams or self.wallat_place(i, k) is not None:
                 continue
             column = halves_of(columns[0])[0]
             beam = max((halves_of(one)[0] for one in beams), key=lambda one: one.depth)
@@ -542,12 +566,6 @@ class Grid:
         return found
 
 
-def _at(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
-    """Return the section of a place: the last that fits."""
-    found = [one for (at, level), one in cells.items() if at in (0, i) and level in (0, k)]
-    return found[-1] if found else None
-
-
 def halves_of(one: Any) -> Halves:
     """Return the sections of the two halves of a member."""
     return one if isinstance(one, tuple) else (one, one)
@@ -556,12 +574,6 @@ def halves_of(one: Any) -> Halves:
 def is_drawn(one: Any) -> bool:
     """Return whether a cell has sections."""
     return one is not None and not isinstance(one, FrameMember)
-
-
-def _area(one: Any) -> float:
-    if not is_drawn(one):
-        return 0.0
-    return 0.5 * sum(part.gross_area for part in halves_of(one))
 
 
 def _half_depth(one: Any, other: Any, end: int) -> float:
@@ -578,15 +590,7 @@ def _elastic_kind(one: Any) -> FrameMember | None:
         return one  # type: ignore[no-any-return]
     parts = halves_of(one)
     modulus, inertia = parts[0].concrete_law["ec"], 0.5 * sum(part.inertia for part in parts)
-    return FrameMember(modulus, _area(one), inertia)
-
-
-def _rounded(one: Any, load: float) -> float:
-    """Return an axial load in steps of a part of f'c A_g; a column in tension has none."""
-    if not is_drawn(one):
-        return load
-    step = _STEP * _area(one) * halves_of(one)[0].concrete.fc
-    return max(round(load / step), 1) * step if load > 0 else 0.0
+    return FrameMember(modulus, 0.5 * sum(part.gross_area for part in parts), inertia)
 
 
 def _kind(
@@ -606,10 +610,9 @@ def _kind(
             f"frame: member {name} of {length:g} m has rigid ends of {sum(ends):g} m, and no length"
         )
     try:
-        made = _made(halves_of(one), clear, load, span_load, spans)
+        return _made(halves_of(one), clear, load, span_load, spans, ends)
     except InputError as error:
         raise InputError(f"frame: member {name}: {error}") from None
-    return with_rigid_end(made, ends)
 
 
 @lru_cache(maxsize=1024)
@@ -619,5 +622,7 @@ def _made(
     axial_load: float,
     load: float,
     spans: tuple[Pair, Pair] | None,
+    ends: tuple[float, float],
 ) -> FrameMember:
-    return member(sections, length, axial_load=axial_load, load=load, shear_spans=spans)
+    made = member(sections, length, axial_load=axial_load, load=load, shear_spans=spans)
+    return with_rigid_end(made, ends)

@@ -16,9 +16,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, lru_cache, partial
 from typing import Literal, get_args
 
 import numpy as np
@@ -27,7 +27,7 @@ from rbsdem import _arguments, _core
 from rbsdem._files import Tabular
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Spiral, Steel
+from rbsdem.model.materials import Bar, Spiral, Steel
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.curvature import (
@@ -287,15 +287,21 @@ class _Block:
     share: float
     steel_factor: float = 1.0
 
+    @cached_property
+    def _depth_and_bars(self) -> tuple[float, Sequence[Bar]]:
+        return self.section.depth, self.section.bars
+
     def point(self, axis: float, strains: Callable[[Array], Array]) -> tuple[float, float]:
         """Return axial load and moment for a neutral axis; strains of bars by their places."""
-        deep = min(self.share * axis, self.section.depth)
+        depth, bars = self._depth_and_bars
+        deep = min(self.share * axis, depth)
         area, first = self.section.part(deep)
         load, moment = self.stress * area, -self.stress * first
-        for y, bar, steel in self.section.bars:
+        strained = strains(np.array([y for y, _, _ in bars])).tolist()
+        for (y, bar, steel), strain in zip(bars, strained, strict=True):
             limit = self.steel_factor * steel.fy
-            stress = min(max(float(strains(np.array([y]))[0]) * steel.es, -limit), limit)
-            if y + 0.5 * self.section.depth <= deep and stress > 0:
+            stress = min(max(strain * steel.es, -limit), limit)
+            if y + 0.5 * depth <= deep and stress > 0:
                 stress -= self.stress
             load += stress * bar
             moment -= stress * bar * y
@@ -345,8 +351,8 @@ def _aci_block(section: Section) -> _Block:
     return _Block(section, 0.85 * fc, block_share(fc / _MPA))
 
 
-def _aci_strains(section: Section, axis: float) -> Callable[[Array], Array]:
-    return lambda y: _ACI_STRAIN * (1.0 - (y + 0.5 * section.depth) / axis)
+def _aci_strains(depth: float, axis: float) -> Callable[[Array], Array]:
+    return lambda y: _ACI_STRAIN * (1.0 - (y + 0.5 * depth) / axis)
 
 
 def nominal_moment(section: Section, axial_load: float) -> float:
@@ -365,6 +371,7 @@ def nominal_moment(section: Section, axial_load: float) -> float:
     return nominal_point(section, axial_load)[1]
 
 
+@lru_cache(maxsize=1024)
 def nominal_point(section: Section, axial_load: float) -> tuple[float, float]:
     """Return the neutral axis [m] and the moment of `nominal_moment` [N m].
 
@@ -375,12 +382,12 @@ def nominal_point(section: Section, axial_load: float) -> tuple[float, float]:
     axial_load : float
         Compression positive [N].
     """
-    block = _aci_block(section)
+    block, depth = _aci_block(section), section.depth
 
     def at(axis: float) -> tuple[float, float]:
-        return block.point(axis, _aci_strains(section, axis))
+        return block.point(axis, _aci_strains(depth, axis))
 
-    low, high = 1e-6 * section.depth, 1e6 * section.depth
+    low, high = 1e-6 * depth, 1e6 * depth
     if not at(low)[0] <= axial_load <= at(high)[0]:
         return math.nan, math.nan
     while high - low > 1e-14 * high:
@@ -396,10 +403,10 @@ def _aci_318(section: Section, count: int) -> InteractionDiagram:
     outermost, steel = _outermost(section)
     yields = steel.fy / steel.es
     axes = _axes(section, ultimate, count, [0.0, yields, yields + 0.003, 0.005])
-    rows = [block.point(axis, _aci_strains(section, axis)) for axis in axes]
+    rows = [block.point(axis, _aci_strains(section.depth, axis)) for axis in axes]
     pulled, pressed = block.extremes(math.inf)
     load, moment = np.array([pulled, *rows, pressed]).T
-    inner = [-_aci_strains(section, axis)(np.array([outermost]))[0] for axis in axes]
+    inner = [-_aci_strains(section.depth, axis)(np.array([outermost]))[0] for axis in axes]
     tension = np.array([math.inf, *inner, -ultimate])
     spiral = isinstance(section.ties, Spiral) and not section.ties.hoops
     pressed_factor, cap = (0.75, 0.85) if spiral else (0.65, 0.80)
