@@ -14,6 +14,7 @@ from rbsdem.frames import FrameNode
 from rbsdem.run.bands import scatter_of_tests
 from rbsdem.run.walls import failure_of
 from rbsdem.section import hinge
+from rbsdem.section.criteria import criteria
 from rbsdem.section.parameters import parameters
 
 pytestmark = [
@@ -330,6 +331,22 @@ def test_limit_states_of_a_wall():
     assert drift["cracking"] < drift["first_yield"] < drift["crushing"] < drift["spalling"]
     assert drift["first_yield"] <= drift["web_yield"]
     assert "bar_buckling" in drift
+
+
+def test_a_wall_in_a_frame_has_the_limit_states_of_one_that_stands_alone():
+    """One storey is the same wall but for how its part above the joint closes and slips."""
+    alone = replace(rbsdem.section.wall(wall(), 4.56, axial_load=LOAD), kinematics="small")
+    drifts = [
+        {state.name: state.drift for state in run.limit_states()}
+        for run in (rbsdem.pushover(alone, drift=0.03), rbsdem.pushover(cut(wall(), 1), drift=0.03))
+    ]
+    names = {"first_yield", "web_yield", "bar_buckling", "crushing", "spalling"}
+    assert names <= set(drifts[1])
+    for name in names:
+        assert drifts[1][name] == pytest.approx(drifts[0][name], rel=5e-3), name
+    # Runs without rows, as those of ensembles, look at the bars alone.
+    watched = {each.name for each in criteria(cut(wall(), 1)) if each.rotation == 1.0}
+    assert {"first_yield", "web_yield", "bar_buckling", "bar_fracture"} <= watched
 
 
 def test_drift_capacity_of_a_wall_by_hand():

@@ -16,7 +16,7 @@ from rbsdem import _arguments, _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Layered, Spring
+from rbsdem.model.springs import Gauge, Layered, Spring
 
 if TYPE_CHECKING:
     pass
@@ -79,6 +79,8 @@ class FrameMember:
     shear_spans : pair of pairs of float, optional
         M/V that its strength in shear is of [m], at start and end, with y > 0 in tension and in
         compression; a run tells where its forces have others.
+    gauge : Gauge, optional
+        What the layers of the joint at its start stand for, of a drawn wall.
     """
 
     modulus: float
@@ -103,6 +105,7 @@ class FrameMember:
     shear_spans: tuple[tuple[float, float], tuple[float, float]] | None = field(
         default=None, compare=False, repr=False
     )
+    gauge: Gauge | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameMember")

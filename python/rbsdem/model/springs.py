@@ -24,7 +24,10 @@ AnySpring = TypeVar("AnySpring", bound="Spring")
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
 
-LandmarkName = Literal["cracking", "yield", "spalling", "cap", "residual"]
+LandmarkName = Literal[
+    "cracking", "yield", "web_yield", "spalling", "crushing", "bar_buckling", "bar_fracture",
+    "cap", "residual",
+]  # fmt: skip
 
 #: A deformation that no spring reaches [m or rad].
 _NEVER = 1e30

@@ -19,6 +19,7 @@ from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of, parabola
 from rbsdem.model.springs import Landmark, LandmarkName
 from rbsdem.run.limit_states import LimitState, LimitStates
 from rbsdem.run.rows import Rows
+from rbsdem.section.criteria import Criterion, joint_criteria
 from rbsdem.section.frame import Frame
 from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
 
@@ -39,6 +40,9 @@ _TELLING, _TELLING_OF_WALLS, _OFF_SPAN = 0.5, 0.1, 0.2
 #: Name of the event where a member has reached its strength in shear, behind which it falls, and
 #: the rules of springs that do.
 FAILS, _FALLING = "shear_failure", ("peak_oriented", "pinching")
+
+#: Names of criteria of layers among those of springs.
+_NAMES = {"first_yield": "yield"}
 
 #: A threshold counts as reached within round-off: a path stands on it exactly.
 _REACHED = 1.0 - 1e-9
@@ -473,13 +477,22 @@ class FrameResult(Rows):
             if spring.rule == "layered" and spring.group == "axial_spring"
         }
         joints, landmarks, lost = self.frame.joints, self.frame.landmarks, self._lost_at
+        watched: dict[int, list[Criterion]] = {}
         found = []
         for spring, whole, _ in self._springs:
             values = whole[: lost.get(spring.member)]
-            reached = [(point, _first_row(point, values)) for point in landmarks[spring]]
+            reached = [
+                (point, _first_row(point.side * values / point.deformation))
+                for point in landmarks[spring]
+            ]
             if spring in joints:
+                made = joints[spring]
+                # Equal members share their joints.
+                if id(made) not in watched:
+                    kind = self.frame.kinds[spring.member]
+                    watched[id(made)] = joint_criteria(kind, spring.position, made)
                 opening = openings[spring.member, spring.position][: values.size]
-                reached += _rows_of_layers(joints[spring].points, opening, values)
+                reached += _rows_of_layers(watched[id(made)], opening, values)
             found.append(reached)
         return found
 
@@ -489,9 +502,11 @@ class FrameResult(Rows):
 
         Cracking, yield and cap of each side, "shear_failure" where a shear spring that loses its
         strength behind it has reached that; of drawn members spalling, where an outer layer of
-        concrete has lost its strength; of the struts of infills (group "infill") cracking, cap and
-        residual; failures of members. A static path is looked at in all of its corners, whichever
-        of its rows were kept (`path`); a response in time in its rows.
+        concrete has lost its strength, of drawn walls spalling at 0.004, "web_yield", "crushing",
+        "bar_buckling" and "bar_fracture" as of one that stands alone; of the struts of infills
+        (group "infill") cracking, cap and residual; failures of members. A static path is looked
+        at in all of its corners, whichever of its rows were kept (`path`); a response in time in
+        its rows.
         """
         path = self._measured
         found = path._found_events()
@@ -596,9 +611,8 @@ class FrameResult(Rows):
         )
 
 
-def _first_row(point: Landmark, values: Array) -> float | None:
-    """Return where a deformation first reaches a landmark: a row, or between two the share."""
-    beyond = point.side * values / point.deformation
+def _first_row(beyond: Array) -> float | None:
+    """Return where a deformation over its limit first comes to 1: a row, or between two a share."""
     rows = np.flatnonzero(beyond >= _REACHED)
     if not rows.size:
         return None
@@ -611,17 +625,16 @@ def _first_row(point: Landmark, values: Array) -> float | None:
 
 
 def _rows_of_layers(
-    points: list[tuple[float, list[Landmark]]], opening: Array, rotation: Array
+    watched: Sequence[Criterion], opening: Array, rotation: Array
 ) -> list[tuple[Landmark, float | None]]:
-    """Return where layers of a joint yield in tension and spall, for each way that it turns."""
+    """Return where layers of a joint reach their criteria, for each way that it turns."""
     first: dict[tuple[LandmarkName, Literal[1, -1]], float] = {}
-    for y, marks in points:
-        for point in marks:
-            row = _first_row(point, opening + y * rotation)
-            if row is not None:
-                side: Literal[1, -1] = 1 if _at(row, rotation) >= 0 else -1
-                key = point.name, side
-                first[key] = min(first.get(key, row), row)
+    for each in watched:
+        row = _first_row((each.rotation * rotation + each.opening * opening) / each.threshold)
+        if row is not None:
+            side: Literal[1, -1] = 1 if _at(row, rotation) >= 0 else -1
+            name: Any = _NAMES.get(each.name, each.name)
+            first[name, side] = min(first.get((name, side), row), row)
     return [
         (Landmark(name, side, abs(_at(row, rotation)), "first layer"), row)
         for (name, side), row in first.items()

@@ -161,7 +161,10 @@ _EVENTS = {
     ("flexure", "cracking"): "cracking",
     ("flexure", "yield"): "first_yield",
     ("flexure", "cap"): "cap",
-    ("flexure", "spalling"): "spalling",
+    **{
+        ("flexure", name): name
+        for name in ("web_yield", "spalling", "crushing", "bar_buckling", "bar_fracture")
+    },
     ("shear", "cracking"): "shear_cracking",
     ("shear", "yield"): "shear_yield",
     ("infill", "cracking"): "infill_cracking",

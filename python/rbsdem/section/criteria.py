@@ -17,12 +17,11 @@ import numpy as np
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.frame import FrameSpring
+from rbsdem.model.frame import FrameMember, FrameSpring
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
 from rbsdem.model.wall import WallSection
 from rbsdem.section.frame import Frame, Structure
-from rbsdem.section.hinge import wall_buckling_strain
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.quantities import goodnight_buckling_strain, quantities
 
@@ -145,10 +144,21 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
 
 
 def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
-    """Yield where layers yield in tension; they are numbered behind the rotational springs."""
+    """Yield where layers yield in tension; they are numbered behind the rotational springs.
+
+    Of walls, what strains of their bars reach.
+    """
     for own in springs:
         made = frame.joints.get(own)
         if made is None:
+            continue
+        kind = frame.kinds[own.member]
+        if (drawn := _drawn_wall(kind, own.position)) is not None:
+            for at, _, over, strains in _outer_bars(*drawn, made):
+                for name, strain in strains.items():
+                    source = f"{_OF_BARS[name]} of {own.member}"
+                    yield Criterion(name, number + at + 1, strain * over, source, rotation=1.0)
+            number += len(made.layers)
             continue
         places: dict[Spring, list[float]] = {}
         for y, layer in made.layers:
@@ -162,6 +172,49 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
                 if mark.name == "yield" and mark.side > 0:
                     source = f"{mark.source} of a {type(layer).__name__} layer of {own.member}"
                     yield Criterion("first_yield", number, mark.deformation, source, rotation=1.0)
+
+
+def _drawn_wall(kind: FrameMember, position: float) -> tuple[WallSection, Gauge] | None:
+    """Return the section and the gauge of a joint of layers at the foot of a drawn wall."""
+    section = kind.sections and kind.sections[0]
+    if position == 0.0 and kind.gauge is not None and isinstance(section, WallSection):
+        return section, kind.gauge
+    return None
+
+
+def joint_criteria(kind: FrameMember, position: float, made: Layered) -> list[Criterion]:
+    """Return criteria on rotation and opening of a joint of layers in a member of a frame.
+
+    Where a layer yields in tension ("first_yield"), and an outer layer of concrete has lost its
+    strength ("spalling"); of the foot of a drawn wall the states of one that stands alone that
+    concern its bars, its cover and its core.
+
+    Parameters
+    ----------
+    kind : FrameMember
+        What the member is of.
+    position : float
+        Of the joint, in shares of the clear length.
+    made : Layered
+        The joint.
+    """
+    if (drawn := _drawn_wall(kind, position)) is not None:
+        section, gauge = drawn
+        wanted = {*_OF_BARS, "spalling", "crushing"}
+        every = *_of_bars(section, 0, (made, gauge)), *_of_fibres(section, 0, gauge)
+        return [criterion for criterion in every if criterion.name in wanted]
+    return [
+        Criterion(
+            "first_yield" if mark.name == "yield" else mark.name,
+            0,
+            mark.deformation,
+            mark.source,
+            rotation=mark.side * y,
+            opening=mark.side,
+        )
+        for y, marks in made.points
+        for mark in marks
+    ]
 
 
 def all_thresholds(column: Structure, openings: bool) -> Array:
@@ -223,8 +276,10 @@ def _of_layers(
         return
     gauge = column.gauge(joint)
     if gauge is not None and isinstance(column, LayeredColumn) and column.drawing is not None:
-        section = column.drawing.section
-        yield from _of_bars(section, column, joint, (spring, gauge), "bar_buckling" in names)
+        section, buckles = column.drawing.section, math.inf
+        if "bar_buckling" in names and section.shape != "wall":
+            buckles = buckling_strain(section, column)
+        yield from _of_bars(section, joint, (spring, gauge), buckles)
         if not set(names) <= set(_OF_BARS):
             yield from _of_fibres(section, joint, gauge)
         return
@@ -279,42 +334,43 @@ def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion
 
 
 def _of_bars(
-    section: Section, column: Column, joint: int, layers: tuple[Layered, Gauge], buckling: bool
+    section: Section, joint: int, layers: tuple[Layered, Gauge], buckles: float = math.inf
 ) -> Iterator[Criterion]:
     """Yield strains of the bars of a hinge that knows its drawing."""
     spring, gauge = layers
-    buckles = buckling_strain(section, column) if buckling else math.inf
-    outer: dict[tuple[float, ...], list[float]] = {}
+    for _, y, over, strains in _outer_bars(section, gauge, spring, buckles):
+        lever = {"rotation": y / over, "opening": 1.0 / over}
+        for name, at in strains.items():
+            yield Criterion(name, joint, float(at), _OF_BARS[name], **lever)
+
+
+def _outer_bars(
+    section: Section, gauge: Gauge, spring: Layered, buckles: float = math.inf
+) -> Iterator[tuple[int, float, float, dict[str, float]]]:
+    """Yield layer, place, length and strains at the limit states of the outermost of equal bars.
+
+    Bars of columns buckle at the strain that is given, those of walls at that of their layers.
+    """
+    outer: dict[tuple[float, ...], list[tuple[float, int]]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
-    layers_of_bars = [(y, over) for (y, _), part, over in rows if part == "bar"]
+    layers_of_bars = [
+        (at, y, layer, over) for at, ((y, layer), part, over) in enumerate(rows) if part == "bar"
+    ]
     # They are in the order of the bars: at one height there may be bars of several steels.
-    for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
+    for (at, y, layer, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         in_web, bows = 0.0, buckles
         if isinstance(section, WallSection):
             in_web = float(not section.in_boundary(y))
-            bows = bar_buckling_strain(column, y) if buckling else math.inf
-        outer.setdefault((steel.fy / steel.es, steel.eps_u, bows, in_web, over), []).append(y)
+            bows = (getattr(layer, "d_buckle", None) or math.inf) / over
+        key = steel.fy / steel.es, steel.eps_u, bows, in_web, over
+        outer.setdefault(key, []).append((y, at))
     for (yields, breaks, bows, in_web, over), places in outer.items():
-        thresholds = {"bar_fracture": breaks, "bar_buckling": bows}
-        thresholds["web_yield" if in_web else "first_yield"] = yields
+        strains = {"bar_fracture": breaks, "bar_buckling": bows}
+        strains["web_yield" if in_web else "first_yield"] = yields
+        known = {name: strain for name, strain in strains.items() if math.isfinite(strain)}
         # Plane sections: of equal bars the outermost ones are stretched most.
-        for y in dict.fromkeys((max(places), min(places))):
-            lever = {"rotation": y / over, "opening": 1.0 / over}
-            for name, at in thresholds.items():
-                if math.isfinite(at):
-                    yield Criterion(name, joint, float(at), _OF_BARS[name], **lever)
-
-
-def bar_buckling_strain(column: Column, y: float) -> float:
-    """Return the tensile strain beyond which a bar of a wall buckles on reversal.
-
-    That of the layers of its joint (Goodnight, Kowalsky and Nau 2013): bars outside of hoops have
-    none of them.
-    """
-    assert isinstance(column, LayeredColumn)
-    drawing = column.drawing
-    assert drawing is not None
-    return wall_buckling_strain(drawing.section, drawing.axial_load, y)
+        for y, at in dict.fromkeys((max(places), min(places))):
+            yield at, y, over, known
 
 
 def buckling_strain(section: Section, column: Column) -> float:

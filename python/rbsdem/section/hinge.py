@@ -329,23 +329,6 @@ def _buckling_strain(confinement: float, ratio: float) -> float:
     return max(0.01, 0.03 + 700 * confinement / _ES - 0.1 * ratio)
 
 
-def wall_buckling_strain(section: Section, axial_load: float, y: float) -> float:
-    """Return the strain from which on a bar at y buckles when it is compressed again.
-
-    Parameters
-    ----------
-    section : Section
-        A wall.
-    axial_load : float
-        Compression positive [N].
-    y : float
-        Of the bar [m].
-    """
-    hooped = abs(y) >= 0.5 * section.depth - section.hooped[y > 0]
-    pressure = strips_of(section, _STRIPS).hoop_pressure[y > 0] if hooped else 0.0
-    return _buckling_strain(pressure, axial_load / (section.concrete.fc * section.gross_area))
-
-
 def _strength_of(
     section: Section, steel: Steel, given: ModelParameters
 ) -> tuple[float, float, bool]:

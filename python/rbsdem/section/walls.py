@@ -13,7 +13,7 @@ from rbsdem import _arguments
 from rbsdem.errors import InputError
 from rbsdem.model.column import Footing, Top
 from rbsdem.model.frame import FrameMember
-from rbsdem.model.springs import Elastic, Layered, Spring, unchecked
+from rbsdem.model.springs import Elastic, Gauge, Layered, Spring, unchecked
 from rbsdem.model.wall import WallSection
 from rbsdem.section.columns import column
 from rbsdem.section.curvature import column_length
@@ -150,9 +150,8 @@ def wall_members(
             )
             elastic = low + foot.joint.length
         place = float(span), low, high, max(low, elastic)
-        made.append(
-            _storey(own, float(loads[i]), place, foot and foot.joint.spring, model_parameters)
-        )
+        of_foot = foot and (foot.joint.spring, foot.joint.gauge)
+        made.append(_storey(own, float(loads[i]), place, of_foot, model_parameters))
     return tuple(made)
 
 
@@ -178,7 +177,7 @@ def _storey(
     section: WallSection,
     axial_load: float,
     place: tuple[float, float, float, float],
-    foot: Layered | None,
+    foot: tuple[Layered, Gauge] | None,
     given: ModelParameters | None,
 ) -> FrameMember:
     """Return the kind of one storey.
@@ -188,7 +187,7 @@ def _storey(
     span, low, high, begins = place
     height, part = high - low, high - begins
     whole = LayeredModel(section, span, axial_load, 2, given or parameters())
-    flexure: dict[float, Spring] = {} if foot is None else {0.0: foot}
+    flexure: dict[float, Spring] = {} if foot is None else {0.0: foot[0]}
     if part < _SHORTEST * height:
         # All of the storey is part of the joint below.
         flexure[0.5] = unchecked(Elastic, k=_STIFF * whole.joint.flexural_stiffness / height)
@@ -200,7 +199,7 @@ def _storey(
         middle = (0.5 * (begins + high) - low) / height
         flexure[middle] = whole.above(stiffness, arm + 0.5 * part, arm - 0.5 * part)
     area, modulus = section.gross_area, section.concrete_law["ec"]
-    layers: Any = foot.layers if foot else ()
+    layers: Any = foot[0].layers if foot else ()
     # The joint closes by its layers, the rest by this.
     closes = modulus * area / sum(layer.k for _, layer in layers) if layers else 0.0
     return FrameMember(
@@ -213,4 +212,5 @@ def _storey(
         length=height,
         sections=(section, section),
         shear_spans=((span, span), (span, span)) if low == 0.0 else None,
+        gauge=foot and foot[1],
     )
