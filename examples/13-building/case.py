@@ -25,7 +25,7 @@ for code in ("en_1998_3", "asce_41"):
     print(plot.table(checked.worst(3)))
 
 # The estimate of the code beside the building under records that are scaled to its spectrum.
-print(demand.check(rbsdem.motions.synthetic(8)))
+print(rbsdem.codes.check_target(demand, rbsdem.motions.synthetic(8)))
 
 if "--no-plot" not in sys.argv:
     figures = {

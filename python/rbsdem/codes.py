@@ -10,10 +10,11 @@ from rbsdem.checks.asce_41 import beam_rotations as beam_rotations
 from rbsdem.checks.code_values import CodeValues as CodeValues
 from rbsdem.checks.code_values import code_values as code_values
 from rbsdem.checks.code_values import compare as compare
+from rbsdem.checks.target import Capacity as Capacity
+from rbsdem.checks.target import Target as Target
+from rbsdem.checks.target import target as target
+from rbsdem.many.check_target import check_target as check_target
 from rbsdem.many.judgement import Judgement as Judgement
 from rbsdem.many.judgement import judge as judge
-from rbsdem.many.target import Capacity as Capacity
-from rbsdem.many.target import Target as Target
-from rbsdem.many.target import target as target
 from rbsdem.motions.design import DesignSpectrum as DesignSpectrum
 from rbsdem.section.quantities import quantities as quantities

@@ -7,9 +7,9 @@ import pytest
 import strategies_frames
 
 import rbsdem
-from rbsdem.codes import Capacity, DesignSpectrum, target
+from rbsdem.checks.target import equivalent
+from rbsdem.codes import Capacity, DesignSpectrum, check_target, target
 from rbsdem.frames import FrameNode
-from rbsdem.many.target import equivalent
 from rbsdem.motions.design import damping_factor
 
 #: g of the sources over that of the program.
@@ -325,7 +325,7 @@ def test_refusals(s3):
         (lambda: target(s3, demand, "en_1998", cm=0.9), "it takes iterate"),
         (lambda: target(s3, 0.24), "DesignSpectrum"),
         (lambda: target(3.0, demand), "pushover"),
-        (lambda: target(s3, demand).check([]), "push-over of a frame"),
+        (lambda: check_target(target(s3, demand), []), "push-over of a frame"),
         (lambda: DesignSpectrum.en_1998(2.45), "part of g"),
         (lambda: DesignSpectrum.asce_41(0.9 * 9.81, 0.5), "part of g"),
         (lambda: DesignSpectrum.en_1998(0.2, "F"), "A, B, C, D, E"),
@@ -439,7 +439,7 @@ def test_records_of_an_elastic_frame_have_its_spectrum(portal):
     record = rbsdem.motions.synthetic(1)[0]
     own = DesignSpectrum.mean_of([record])
     found = target(rbsdem.pushover(frame, drift=0.05), own, "en_1998")
-    check = found.check([record], progress=False, dt=0.0025)
+    check = check_target(found, [record], progress=False, dt=0.0025)
     assert check.factor[0] == pytest.approx(1.0, abs=2e-3)
     row = check.to_pandas().set_index("where").loc["roof"]
     assert row["ratio"] == pytest.approx(1.0, abs=0.04)
@@ -449,8 +449,8 @@ def test_records_of_an_elastic_frame_have_its_spectrum(portal):
 def test_the_check_scales_records_to_the_demand(portal):
     found = target(portal, DesignSpectrum.en_1998(0.35, "C"))
     records = rbsdem.motions.synthetic(3)
-    check = found.check(records, progress=False)
-    halves = found.check([one.scaled(0.5) for one in records], progress=False)
+    check = check_target(found, records, progress=False)
+    halves = check_target(found, [one.scaled(0.5) for one in records], progress=False)
     np.testing.assert_allclose(halves.factor, 2 * check.factor, rtol=1e-12)
     np.testing.assert_allclose(halves.roof_drift, check.roof_drift, rtol=1e-9)
     table = check.to_pandas()

@@ -340,21 +340,25 @@ class Assessment(Tabular):
             "demand_rad",
             f"limit_{name}_rad",
             f"ratio_{name}",
+            "shear_N",
+            "shear_strength_N",
             "ratio_shear",
+            "ratio",
+            "governed_by",
         ]
-        columns = [*columns, "ratio", "governed_by"]
         return (
             frame.sort_values("ratio", ascending=False)[columns].head(count).reset_index(drop=True)
         )
 
     def counts(self) -> dict[str, int]:
-        """Return how many ends and joints are beyond each level, in shear, and not covered.
+        """Return how many ends and joints exceed each level and their shear strength.
 
-        An end counts once, whatever its two sides and their rows are.
+        The last number is that of those which the code does not cover. An end counts once, whatever
+        its two sides and their rows are.
         """
 
-        def number(beyond: Callable[[dict[str, Any]], bool]) -> int:
-            return len({(row["member"], row["end"]) for row in self.rows if beyond(row)})
+        def number(exceeds: Callable[[dict[str, Any]], bool]) -> int:
+            return len({(row["member"], row["end"]) for row in self.rows if exceeds(row)})
 
         found = {
             name: number(lambda row, key=f"ratio_{name}": row[key] > 1.0)  # type: ignore[misc]
@@ -365,20 +369,23 @@ class Assessment(Tabular):
         return found
 
     def accepted(self, level: str | None = None) -> bool:
-        """Return whether all ends are evaluated and within a level and their shear strength."""
+        """Return whether all ends are evaluated, and none exceeds a level or its shear strength."""
         name, counts = self._level(level), self.counts()
         return not (counts[name] or counts["shear"] or counts["not evaluated"])
 
     def states(self) -> dict[tuple[str, str], int]:
-        """Return the number of levels that each end has passed; -1: not covered."""
+        """Return the number of levels that each end exceeds; -1: not covered.
+
+        What exceeds its shear strength exceeds all.
+        """
         found: dict[tuple[str, str], int] = {}
         for row in self.rows:
-            passed = sum(row[f"ratio_{name}"] > 1.0 for name in self.levels)
+            exceeded = sum(row[f"ratio_{name}"] > 1.0 for name in self.levels)
             if row["ratio_shear"] > 1.0:
-                passed = len(self.levels)
-            passed = passed if row["status"] == "evaluated" else -1
+                exceeded = len(self.levels)
+            exceeded = exceeded if row["status"] == "evaluated" else -1
             at = row["member"], row["end"]
-            found[at] = max(found.get(at, -1), passed)
+            found[at] = max(found.get(at, -1), exceeded)
         return found
 
     @property
@@ -397,7 +404,7 @@ class Assessment(Tabular):
         annex = " (A.12: over gamma_el, with a fifth of the concrete from L_V = 5 h on)"
         annex = "" if self.code == "asce_41" else annex
         return (
-            f"Shear is beyond its strength at {ends} ends, and no spring fails in shear: the code "
+            f"Shear exceeds its strength at {ends} ends, and no spring fails in shear: the code "
             f"has a lower bound that falls with ductility{annex}, the springs the mean of tests.",
         )
 
@@ -412,7 +419,9 @@ class Assessment(Tabular):
 
     def __repr__(self) -> str:
         told = ", ".join(
-            f"{number} beyond {name}" for name, number in self.counts().items() if number
+            (f"{number} {name}" if name == "not evaluated" else f"{number} exceed {name}")
+            for name, number in self.counts().items()
+            if number
         )
         where = "envelope"
         if self.displacement is not None:
@@ -422,7 +431,9 @@ class Assessment(Tabular):
         parts = {(row["member"], row["end"]) for row in self.rows}
         ends = sum(end in ("start", "end") for _, end in parts)
         joints = f" and {len(parts) - ends} joints" if len(parts) > ends else ""
-        return f"Assessment({self.code}, {where}, {ends} ends{joints}: {told or 'all within'})"
+        return (
+            f"Assessment({self.code}, {where}, {ends} ends{joints}: {told or 'no level exceeded'})"
+        )
 
     def __str__(self) -> str:
         return "\n".join((repr(self), *self.warnings))

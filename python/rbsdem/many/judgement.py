@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from rbsdem.checks.acceptance import LEVELS, Assessment, assess
+from rbsdem.checks.target import Target, target
 from rbsdem.errors import InputError
-from rbsdem.many.target import Target, TargetCheck, target
+from rbsdem.many.check_target import TargetCheck, check_target
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.run.case import Case
@@ -149,7 +150,7 @@ def judge(case: Case, *, jobs: int | None = None, progress: bool = False) -> Jud
             place, units = case.records["path"], case.records.get("units")
             folder = Path(place).is_dir()
             records = read_motions(place, units) if folder else [read_motion(place, units)]
-            check = point.check(records, jobs=jobs, progress=progress)
+            check = check_target(point, records, jobs=jobs, progress=progress)
     at = point if point is not None and point.reached else None
     found = []
     for given in case.assess:

@@ -11,8 +11,8 @@ from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.checks.acceptance import Assessment
+from rbsdem.checks.target import Target
 from rbsdem.errors import InputError
-from rbsdem.many.target import Target
 from rbsdem.model.frame import MemberGeometry
 from rbsdem.output.style import (
     MODEL_LINE,
@@ -749,8 +749,8 @@ def _dress(ax: Axes, structure: Frame) -> None:
 
 
 _NAMES = {"asce_41": "ASCE 41-17", "en_1998": "EN 1998-1, N2", "capacity_spectrum": "FEMA 440"}
-#: Fills of ends by the levels that they have passed, and of those that are not covered.
-_PASSED = ("white", "#f4d35e", "#ee964b", "#c0392b")
+#: Fills of ends by the levels that they exceed, and of those that are not covered.
+_EXCEEDED = ("white", "#f4d35e", "#ee964b", "#c0392b")
 _NOT_COVERED = "0.75"
 _POINT: dict[str, Any] = {"marker": "o", "markersize": 4.5, "color": "#c0392b", "zorder": 5}
 
@@ -822,7 +822,7 @@ def _inside(found: Target, period: float) -> bool:
 
 
 def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axes:
-    """Draw a frame with ends of members and joints in the colours of the levels they have passed.
+    """Draw a frame with ends of members and joints in the colours of the levels that they exceed.
 
     Parameters
     ----------
@@ -836,12 +836,12 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, in m. Members beyond their shear strength have the colour of the last level.
+        The axes, in m. Members that exceed their shear strength have the colour of the last level.
     """
     _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
     structure, states = found.result.frame, found.states()
-    names = ["within all", *(f"beyond {name}" for name in found.levels)]
-    names[-1] += " or in shear" if found.counts()["shear"] else ""
+    names = ["no level exceeded", *(f"{name} exceeded" for name in found.levels)]
+    names[-1] += ", or shear strength" if found.counts()["shear"] else ""
     with axes_or_new(ax, _figure_size(structure)) as drawn:
         _draw_supports(drawn, structure, _size(structure))
         _undeformed(drawn, structure, True)
@@ -858,12 +858,12 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
                 strict=True,
             )
         )
-        for (name, _), passed in states.items():
+        for (name, _), exceeded in states.items():
             if name in nodes:
-                places.setdefault(passed, []).append(nodes[name])
-        for passed, points in sorted(places.items()):
-            face = _NOT_COVERED if passed < 0 else _PASSED[passed]
-            name = "not covered" if passed < 0 else names[passed]
+                places.setdefault(exceeded, []).append(nodes[name])
+        for exceeded, points in sorted(places.items()):
+            face = _NOT_COVERED if exceeded < 0 else _EXCEEDED[exceeded]
+            name = "not covered" if exceeded < 0 else names[exceeded]
             mark = {"linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 5}
             mark |= {"markeredgecolor": "black", "markeredgewidth": 0.5, "markerfacecolor": face}
             words = f"{name} ({len(points)})"

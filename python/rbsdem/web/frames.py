@@ -19,8 +19,8 @@ from rbsdem._package import unwarned
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array
 from rbsdem.checks.acceptance import AcceptanceCode, Assessment, assess
+from rbsdem.checks.target import Target, target
 from rbsdem.errors import InputError, RbsdemError, SolveError
-from rbsdem.many.target import Target, target
 from rbsdem.model.shape import Section
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.motion import GroundMotion

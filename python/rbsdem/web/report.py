@@ -25,10 +25,10 @@ from rbsdem._types import DataFrame
 from rbsdem.checks.acceptance import Assessment, between, rows_at
 from rbsdem.checks.code_values import code_values
 from rbsdem.checks.infills import CHECK_NOTE, infills
+from rbsdem.checks.target import Target
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
-from rbsdem.many.target import Target
 from rbsdem.measured.specimens import Specimens
 from rbsdem.model.shape import Section
 from rbsdem.output import frames, many, section
@@ -61,8 +61,7 @@ _LEFT_OUT = (
     "Strengths are those of the drawings. Left out: torsion and motion across the frame, infills, "
     "the ground, splices that were not named, factors of force-controlled actions, of joints all "
     "but the strut (EN 1998) or limits that were given (ASCE 41). Tested frames were 10 to 20 % "
-    "off in their peaks in the median, and a factor of 1.5 in the drift at the peak "
-    "(docs/frames.md)."
+    "off in their peaks in the median, and a factor of 1.5 in the drift at the peak."
 )
 _STOREYS = (
     "Drift, shear, and the part theta = P d/(V h) of it that the dead load P makes (EN 1998-1, "
@@ -485,8 +484,8 @@ def _of_assessment(
         drawn.append(partial(frames.storey_drift, result))
     drawn.append(partial(frames.assessment, found))
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
-    told = "What is beyond its strength in shear has the colour of the last level."
-    text = f"{found.source}: ends and joints beyond each level: {counts}."
+    told = "What exceeds its strength in shear has the colour of the last level."
+    text = f"{found.source}: ends and joints that exceed each level: {counts}."
     text = " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
     yield Sheet("Members", text, tuple(drawn), found.worst(10))
     yield Sheet("All members", table=found.to_pandas(), beside=True)

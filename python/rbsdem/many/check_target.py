@@ -1,0 +1,155 @@
+"""Records scaled to a spectrum beside a target displacement: how far the estimate is off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rbsdem import _arguments
+from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame, NDArray, Unpack
+from rbsdem.checks.target import Target
+from rbsdem.many.ensemble import ensemble
+from rbsdem.motions.motion import GroundMotion, checked_motion
+from rbsdem.run.solver import Solver
+
+#: Damping of a frame without any, as the spectra have it.
+_DAMPING = 0.05
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class TargetCheck(Tabular):
+    """Drifts under records beside those of an estimate.
+
+    Attributes
+    ----------
+    record : tuple of str
+        Names of the records.
+    factor : ndarray, shape (records,)
+        By which they were scaled.
+    status : ndarray of str, shape (records,)
+        How each run ended, as those of `rbsdem.ensemble`.
+    roof_drift : ndarray, shape (records,)
+        Largest drift of the roof.
+    storey_drift : ndarray, shape (records, storeys)
+        Largest drift of each storey.
+    estimated_roof_drift, estimated_storey_drift : float, ndarray of shape (storeys,)
+        Those of the estimate.
+    """
+
+    record: tuple[str, ...]
+    factor: Array
+    status: NDArray[np.str_]
+    roof_drift: Array
+    storey_drift: Array
+    estimated_roof_drift: float
+    estimated_storey_drift: Array
+
+    @property
+    def collapsed(self) -> NDArray[np.bool_]:
+        """Whether each run collapsed; a drift without bound for the medians."""
+        return np.asarray(self.status == "collapsed")
+
+    def _ratios(self) -> dict[str, Array]:
+        found = {"roof": self.roof_drift / self.estimated_roof_drift}
+        for i, estimate in enumerate(self.estimated_storey_drift):
+            found[f"storey {i + 1}"] = self.storey_drift[:, i] / estimate
+        largest = self.storey_drift.max(axis=1) / self.estimated_storey_drift.max()
+        return found | {"largest storey": largest}
+
+    def to_pandas(self) -> DataFrame:
+        """Return a row for the roof and each storey.
+
+        The estimated drift, the median under the records, and their ratio with its scatter
+        (standard deviation of the logarithm, without collapses) and range.
+        """
+        done = np.isin(self.status, ("completed", "collapsed"))
+        rows = []
+        estimates = [self.estimated_roof_drift, *self.estimated_storey_drift.tolist()]
+        estimates.append(float(self.estimated_storey_drift.max()))
+        for (name, ratio), estimate in zip(self._ratios().items(), estimates, strict=True):
+            finite = ratio[done & ~self.collapsed]
+            whole = np.where(self.collapsed, np.inf, ratio)[done]
+            median = float(np.median(whole)) if whole.size else math.nan
+            spread = float(np.log(finite).std(ddof=1)) if finite.size > 1 else math.nan
+            ends = (finite.min(), finite.max()) if finite.size else (math.nan, math.nan)
+            rows.append((name, estimate, median * estimate, median, spread, *map(float, ends)))
+        names = ["where", "estimate_drift", "median_drift", "ratio", "sd_ln", "least", "largest"]
+        return data_frame(rows, names)
+
+    def __repr__(self) -> str:
+        table = self.to_pandas().set_index("where")
+        roof, storey = table.loc["roof"], table.loc["largest storey"]
+        failed = int(np.sum(~np.isin(self.status, ("completed", "collapsed"))))
+        more = f", {failed} not finished" if failed else ""
+        return (
+            f"TargetCheck({len(self.record)} records, {int(self.collapsed.sum())} collapsed{more}: "
+            f"roof drift over the estimate {roof['ratio']:.2f} (sd of ln {roof['sd_ln']:.2f}), "
+            f"largest storey drift {storey['ratio']:.2f} ({storey['sd_ln']:.2f}))"
+        )
+
+
+def check_target(
+    found: Target,
+    records: Sequence[GroundMotion],
+    *,
+    periods: tuple[float, float] = (0.2, 2.0),
+    jobs: int | None = None,
+    progress: bool = True,
+    **solver: Unpack[Solver],
+) -> TargetCheck:
+    """Run the same frame under records scaled to the spectrum: the error of the estimate.
+
+    Parameters
+    ----------
+    found : Target
+        The estimate, of a push-over.
+    records : sequence of GroundMotion
+        The records. Each is scaled so that the mean logarithm of its spectrum over that of the
+        demand is zero.
+    periods : tuple of float, optional
+        Range of periods for it, in parts of the elastic one of the first mode.
+    jobs, progress
+        As for `rbsdem.ensemble`.
+    **solver
+        Settings of the method; by default "newmark" with a step of 0.01 s.
+
+    Returns
+    -------
+    TargetCheck
+        Drifts under the records over those of the estimate. A frame without damping gets 5 % in
+        all modes, as the spectrum has.
+    """
+    frame = found.pushed.frame
+    estimate = found.drift, found.storey_drift
+    if not frame.damped:
+        frame = replace(frame, damping=_DAMPING)
+    low, high = (_arguments.number(value, "check_target: periods", above=0.0) for value in periods)
+    t = np.geomspace(low * found.curve.period, high * found.curve.period, 40)
+    wanted = np.array([found.spectrum.sa(one) for one in t])
+    given = _arguments.several(records, "check_target: records", "records")
+    motions = [checked_motion(one, "check_target: ") for one in given]
+    factors = [
+        math.exp(float(np.log(wanted / one.spectrum(t).pseudo_acceleration).mean()))
+        for one in motions
+    ]
+    storeys = range(1, estimate[1].size + 1)
+    names = [f"peak_storey_drift_{i}" for i in storeys]
+    settings: Any = {"method": "newmark", "dt": 0.01} | solver
+    runs = ensemble(
+        frame, motions, scales=np.array(factors)[:, None], measures=["peak_drift", *names],
+        jobs=jobs, progress=progress, **settings,
+    )  # fmt: skip
+    measured = runs.measures
+    return TargetCheck(
+        tuple(str(name) for name in runs.motions),
+        np.array(factors),
+        runs.status,
+        measured["peak_drift"],
+        np.column_stack([measured[name] for name in names]),
+        *estimate,
+    )
