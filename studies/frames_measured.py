@@ -50,6 +50,8 @@ STOPPED = {96, 97, 98, 99}
 OTHER_UNITS = {31, 154}
 #: Points of a push, and of each way between two reversals.
 PUSH, WAY = 800, 40
+#: Drifts at which secants stand.
+DRIFTS = (0.001, 0.002, 0.005)
 
 
 @dataclass(frozen=True)
@@ -364,6 +366,8 @@ class Portal:
         Of test and model: peak [N]; that of the test and the force of the model at its drift;
         stiffness [N/m] (that of the test is in both) at the first point and at 70 % of the peak;
         drift at the peak.
+    secants : list of tuple of float
+        That of the test at its first point, and secants of the model at `DRIFTS` [N/m].
     stopped : bool
         Whether the model ended before the test.
     """
@@ -373,6 +377,7 @@ class Portal:
     first: tuple[float, float]
     secant: tuple[float, float]
     drift: tuple[float, float]
+    secants: list[tuple[float, float]]
     stopped: bool
 
 
@@ -433,6 +438,10 @@ def portal_answer(row: dict[str, str], drawing: Drawing, curve: Curve, drift: fl
         (1e3 * test[0], float(force[0] / moved[0])),
         (1e3 * test[0], float(force[early] / moved[early])),
         (test[2], float(moved[top] / height)),
+        [
+            (1e3 * test[0], float(np.interp(at * height, moved, force) / (at * height)))
+            for at in DRIFTS
+        ],
         bool(moved[-1] < 0.999 * drift * height),
     )
 
@@ -494,6 +503,66 @@ def portal_table(found: dict[str, Answers]) -> None:
                 cells.append(cell)
             rows.append([f"{name}; {held}", f"{count}", *cells])
     table("portals, test over model: median, sd of ln, within 1.5; tests", list(found), rows)
+
+
+def wear_tables(found: dict[str, Answers], folder: Path) -> None:
+    """Print stiffnesses at small drifts, and what the second cycle at a displacement loses."""
+    rows = []
+    for number, drift in enumerate(DRIFTS):
+        cells = []
+        for one in found.values():
+            held = one.portals[True].items()
+            pairs = [p.secants[number] for n, p in held if n not in DOUBTFUL | OTHER_UNITS]
+            count, cell = scores([test / own for test, own in pairs])
+            cells.append(cell)
+        rows.append([f"portals, tie rods: first stiffness over the secant at {100 * drift:g} %",
+                     f"{count}", *cells])  # fmt: skip
+    table("stiffness, test over model: median, sd of ln, within 1.5; tests", list(found), rows)
+    runs = rows_of(folder / "park_ruitong_peaks.csv")
+    # Both readings of the two cycles at a displacement; in the digitised one most share a tip.
+    tests = [np.abs([float(row[name]) for row in runs]) for name in ("v1_V_kN", "V_kN")]
+    models = [np.abs(one.park_ruitong.force[WAY - 1 :: WAY]) for one in found.values()]
+    pairs = [(i, i + 2) for i in range(2, len(runs) - 2) if i % 4 in (2, 3)]
+
+    def loss(forces: np.ndarray, pair: tuple[int, int]) -> str:
+        return (
+            f"{100 * (1 - forces[pair[1]] / forces[pair[0]]):.1f}" if forces.size > pair[1] else ""
+        )
+
+    rows = []
+    for pair in pairs:
+        by_test = "; ".join(loss(test, pair) for test in tests)
+        by_model = (loss(model, pair) for model in models)
+        rows.append([f"{float(runs[pair[0]]['delta_mm']):.0f} mm", by_test, *by_model])
+    table("Park and Dai Ruitong, loss to the second cycle, %; test, by hand and digitised",
+          list(found), rows)  # fmt: skip
+
+
+def weak_panel() -> None:
+    """Print what three cycles take from the cruciform with a panel without hoops, and its wear."""
+    drawing = cruciform("asce")
+    column, beam = drawing.parts[0].section, drawing.parts[2].section
+    weak = rbsdem.Concrete(20e6)
+    column, beam = replace(column, concrete=weak), replace(beam, concrete=weak)
+    panel = JointPanel(column, beam, beam_length=2.119, column_height=2.473).spring()
+    turns = np.array([s * d for d in (0.01, 0.02, 0.03) for _ in range(3) for s in (1, -1)])
+    path = np.concatenate(
+        [np.linspace(a, b, WAY + 1)[1:] for a, b in pairwise(2.473 * np.r_[0.0, turns])]
+    )
+    rows = []
+    for name, spring in (("as it is", panel), ("without wear", replace(panel, lambda_s=0.0))):
+        nodes = tuple(replace(n, panel=spring) if n.panel else n for n in drawing.nodes)
+        parts = tuple(
+            replace(part, section=beam if part.name in ("west", "east") else column)
+            for part in drawing.parts
+        )
+        curve = followed(replace(drawing, nodes=nodes, parts=parts), path, False)
+        force = np.abs(curve.force[WAY - 1 :: WAY])
+        losses = (100 * (1 - force[i + 4 : i + 6].mean() / force[i : i + 2].mean())
+                  for i in (0, 6, 12) if force.size >= i + 6)  # fmt: skip
+        rows.append([name, "; ".join(f"{loss:.0f}" for loss in losses)])
+    table("the same cruciform without hoops in the node, f'c 20 MPa",
+          ["loss to the third cycle at 1, 2, 3 % drift, %"], rows)  # fmt: skip
 
 
 def energy(curve: Curve, rows: int | None = None) -> float:
@@ -587,6 +656,7 @@ def report(found: dict[str, Answers], folder: Path, entries: bool) -> None:
     portal_table(found)
     push_table({who: one.vecchio_emara for who, one in found.items()})
     loop_table(found, folder)
+    wear_tables(found, folder)
 
 
 def chords(loops: Curve, runs: list[int]) -> Iterator[str]:
@@ -788,6 +858,7 @@ def study(programs: dict[str, Program]) -> None:
         return
     found = {who: answers(asked.folder, asked.ends, one) for who, one in programs.items()}
     report(found, asked.folder, asked.entries)
+    weak_panel()
     elwood_moehle()
     if asked.figures:
         draw(found, asked.folder, asked.figures)

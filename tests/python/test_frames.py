@@ -1157,6 +1157,10 @@ def test_a_column_that_failed_in_shear_sheds_its_load():
     assert lost.member == "C-2-1"
     # Tests lose their load at half to two and a half times the drift.
     assert (lost.lower, lost.upper) == pytest.approx((0.5 * drift[row], 2.5 * drift[row]))
+    # Shortly before it is said that it may have: not after, and not while the drift is small.
+    early = int(np.argmax(np.abs(drift) > 0.25 * limit.min()))
+    cuts = [rbsdem.time_history(frame, t[:n], **load | {"force": force[:n]}) for n in (early, row)]
+    assert [cut.may_have_lost() for cut in (*cuts, run)] == [[], ["C-2-1"], []]
     later = rbsdem.time_history(frame.with_axial_failure(1.2), t, **load)
     assert [event.time for event in later.events if event.name == "lost"] > [lost.time]
     # What has not failed goes the same way to the bit; then it carries nothing.
@@ -1623,3 +1627,30 @@ def test_a_beam_beyond_its_capacity_is_told_with_the_share_that_it_carries(kinem
             [3.0], [6.0], columns=post, beams=beam, floor_mass=1e3, beam_load=1e5,
             kinematics=kinematics,
         )  # fmt: skip
+
+
+def test_an_ida_tells_what_is_not_known_of_axial_failure():
+    """Medians at both ends of the interval make a dispersion that fragilities have."""
+    t = np.arange(0.0, 4.0, 0.01)
+    records = [
+        rbsdem.GroundMotion(np.sin(w * t) * np.minimum(t / 3.0, 1.0), 0.01, name=f"{w:g}")
+        for w in (3.0, 6.0, 12.0)
+    ]
+    options = {
+        "levels": np.geomspace(2.0, 60.0, 14), "method": "newmark", "dt": 0.01,
+        "intensity": "pga", "measures": ["peak_storey_drift"],
+    }  # fmt: skip
+    ida = rbsdem.ida(bent(), records, axial_failure=True, **options)
+    alone = rbsdem.ida(bent(), records, **options)
+    early, late = ida.at_ends
+    assert (early.collapse_intensity <= ida.collapse_intensity).all()
+    assert (ida.collapse_intensity <= late.collapse_intensity).all()
+    ours, theirs = (one.fragility(beta=None) for one in (ida, alone))
+    assert ours.theta == theirs.theta
+    ends = [end.fragility(beta=theirs.beta).theta for end in (early, late)]
+    assert ours.model_beta == pytest.approx(np.log(ends[1] / ends[0]) / 2.5632, rel=1e-9)
+    assert ours.beta == pytest.approx(np.hypot(theirs.beta, ours.model_beta))
+    assert ida.fragility(beta=0.4).beta == 0.4
+    with pytest.raises(InputError, match="leave axial_failure out"):
+        rbsdem.ida(rbsdem.Column(1.0, 1e3, Elastic(1e6), Elastic(1e6)), records[0],
+                   axial_failure=True)  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import rbsdem
@@ -86,3 +87,19 @@ def test_the_lever_arm_is_that_of_the_free_body():
 def test_wrong_panels(change, words):
     with pytest.raises(rbsdem.InputError, match=words):
         replace(NODE, **change)
+
+
+def test_work_wears_panels_down():
+    """Cycles at one rotation lose strength, the sooner the fewer hoops there are."""
+    few = replace(NODE, hoops=replace(HOOPS, diameter=0.006, legs=2))
+    losses = []
+    for node in (NODE, few, replace(NODE, hoops=None)):
+        spring = node.spring()
+        turn = spring.d_y + 0.2 * (spring.d_cap - spring.d_y)
+        force = spring.response(turn * np.array([0.0, *[1.0, -1.0] * 3]))[1::2]
+        whole = replace(spring, lambda_s=0.0)
+        assert whole.response(turn * np.array([0.0, *[1.0, -1.0] * 3]))[5] == pytest.approx(
+            force[0]
+        )
+        losses.append(1 - force[2] / force[0])
+    assert 0.0 < losses[0] < losses[1] < losses[2] < 0.5

@@ -63,8 +63,10 @@ def test_cracked_stiffness_by_hand():
     assert cracked_shear_stiffness(section(SLENDER)) == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("load", [0.0, 100e3, 700e3])
 @pytest.mark.parametrize("specimen", [SLENDER, SQUAT], ids=lambda s: s.name)
-def test_lines_up_to_the_largest_force(specimen):
+def test_lines_up_to_the_largest_force(specimen, load):
+    specimen = replace(specimen, axial_load=load)
     one, drawn = spring(specimen, strength=0.9), section(specimen)
     place = specimen.length, specimen.axial_load
     v_n = 0.9 * column_shear_strength(drawn, *place)
@@ -237,3 +239,20 @@ def test_displacement_measured_below_the_top(tmp_path, measured_mm):
     assert test.displacement == pytest.approx(top, rel=1e-12, abs=1e-15)
     assert peer.predict(specimen, "layered").score("nrmse") < 1e-9
     assert test.base_moment == pytest.approx(net * 2.0 + 1.2e6 * 1.125 * top)
+
+
+def test_a_round_column_loses_its_axial_load_by_asce_41():
+    """theta_y + b of table 10-9, whatever fails first; never without an axial load."""
+    drawn = rbsdem.CircularSection(
+        0.5, rbsdem.Concrete(30e6), layout=rbsdem.Layout(10, 0.02, rbsdem.Steel(450e6)),
+        spiral=rbsdem.Spiral(0.008, 0.15, rbsdem.Steel(450e6)), cover=0.03,
+    )  # fmt: skip
+    column = rbsdem.section.column(drawn, 2.5, axial_load=500e3)
+    d = 2.5 * np.linspace(0.0, 0.09, 400)
+    state = rbsdem.cyclic(column, displacement=d).limit_states()["axial_failure"]
+    values = rbsdem.codes.code_values(drawn, 2.5, 500e3)
+    limit = values["asce_41.b"] + 0.01
+    assert state.drift == pytest.approx(limit, abs=0.09 / 399)
+    assert (state.lower, state.upper) == pytest.approx((limit, 1.7 * limit))
+    light = rbsdem.cyclic(rbsdem.section.column(drawn, 2.5, axial_load=0.0), displacement=d)
+    assert "axial_failure" not in light.limit_states()

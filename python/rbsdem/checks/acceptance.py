@@ -390,7 +390,22 @@ class Assessment(Tabular):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Explanations that a reader needs: of shear beyond its strength where no spring fails."""
+        """Explanations that a reader needs: of axial failure, and of strength in shear."""
+        return (*self._axial_failures(), *self._sheared())
+
+    def _axial_failures(self) -> tuple[str, ...]:
+        """Return members that may have lost their axial load before what is judged."""
+        most = math.inf if self.displacement is None else abs(self.displacement)
+        doubtful = self.result.may_have_lost(most)
+        if not doubtful:
+            return ()
+        return (
+            f"{', '.join(doubtful)}: failed in shear, and beyond the lower end of the interval of "
+            "the drift at axial failure: at least one test of ten has lost its axial load there.",
+        )
+
+    def _sheared(self) -> tuple[str, ...]:
+        """Return a note on shear beyond its strength where no spring fails."""
         sheared = {
             (row["member"], row["end"])
             for row in self.rows

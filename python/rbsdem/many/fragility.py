@@ -6,7 +6,7 @@ import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
 from rbsdem.many.runs import Runs
 from rbsdem.run.rows import bibtex
+from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
 _BEYOND = 0.1
@@ -215,6 +216,8 @@ def _part(
 NARROW = 1.05
 #: Share of bootstrap samples without a curve beyond which one is warned.
 _LOST = 0.1
+#: Quantile of 90 % of the normal distribution.
+_NINETY = 1.2816
 #: Bootstrap samples at the most.
 _MOST_SAMPLES = 100_000
 
@@ -355,6 +358,9 @@ class Fragility:
         Name of the intensity, for figures.
     stated : bool
         Whether beta was stated, and theta alone fitted.
+    model_beta : float
+        The part of beta that the model adds to that of the records, as by what is not known of
+        axial failure: beta is the root of the sum of squares.
     """
 
     name: str
@@ -364,6 +370,7 @@ class Fragility:
     data: Any
     intensity_name: str = ""
     stated: bool = False
+    model_beta: float = 0.0
 
     def citation(self) -> str:
         """Return the works behind the fit as BibTeX; those of its runs are in their `citation`."""
@@ -412,7 +419,7 @@ class Fragility:
             if lost > 0.5:
                 raise InputError(text)
             warn(f"{text}. The others are the band")
-        return np.exp(mu[good]), beta[good]
+        return np.exp(mu[good]), np.hypot(beta[good], self.model_beta)
 
     def band(
         self, intensity: ArrayLike, level: float = 0.9, n: int = 1000, seed: int = 1
@@ -461,9 +468,10 @@ class Fragility:
 
     def __repr__(self) -> str:
         se = np.sqrt(np.diag(self.covariance))
+        added = f", {self.model_beta:.2g} of it by axial failure" if self.model_beta else ""
         return (
             f"Fragility({self.name!r}, theta={self.theta:.4g} +- {se[0]:.2g}, "
-            f"beta={self.beta:.3g} {'stated' if self.stated else f'+- {se[1]:.2g}'})"
+            f"beta={self.beta:.3g} {'stated' if self.stated else f'+- {se[1]:.2g}'}{added})"
         )
 
 
@@ -562,6 +570,11 @@ class WithFragility(Tabular, ABC):
 
     runs: Runs
 
+    @property
+    def at_ends(self) -> tuple[WithFragility, WithFragility] | None:
+        """The same runs at both ends of the interval of what the model does not know."""
+        return None
+
     @abstractmethod
     def _data(self, measure: str, limit: float) -> Counts | Capacities:
         """Return the data of the curve of a limit state."""
@@ -580,7 +593,9 @@ class WithFragility(Tabular, ABC):
             Value of the measure at the limit state.
         beta : float, optional
             Standard deviation of the logarithm of the capacity, stated where the runs do not
-            determine it; the median alone is then fitted.
+            determine it; the median alone is then fitted. Otherwise that of the records; of an IDA
+            with `axial_failure` with that of the drift at axial failure, by the medians at both
+            ends of its interval.
 
         Raises
         ------
@@ -593,7 +608,22 @@ class WithFragility(Tabular, ABC):
         return self._fit(name, state, beta)
 
     def _fit(self, name: str, state: tuple[str, float], beta: float | None) -> Fragility:
-        return fit_fragility(name, self._data(*state), self.runs.measure.label, beta)
+        label = self.runs.measure.label
+        curve = fit_fragility(name, self._data(*state), label, beta)
+        if self.at_ends is None or beta is not None:
+            return curve
+        thetas = []
+        for end, factor in zip(self.at_ends, AXIAL_FAILURE_FACTORS, strict=True):
+            try:
+                thetas.append(fit_fragility(name, end._data(*state), label, curve.beta).theta)
+            except InputError as error:
+                raise InputError(f"axial failure at {factor:g} times its drift: {error}") from error
+        # Eight of ten drifts lie between the ends.
+        added = abs(math.log(thetas[1] / thetas[0])) / (2.0 * _NINETY)
+        total = math.hypot(curve.beta, added)
+        scale = np.diag([1.0, curve.beta / total])
+        covariance = scale @ curve.covariance @ scale
+        return replace(curve, beta=total, covariance=covariance, model_beta=added)
 
     def fragilities(
         self,

@@ -36,7 +36,8 @@ from rbsdem.many.runs import (
 )
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.section.criteria import WATCHED
-from rbsdem.section.frame import Structure
+from rbsdem.section.frame import Frame, Structure
+from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5
@@ -228,6 +229,8 @@ class IDA(WithFragility):
         How it was run.
     seconds : float
         Wall time.
+    early, late : IDA or None
+        The same at both ends of the interval of the drift at axial failure, if that was asked for.
     """
 
     runs: Runs
@@ -235,6 +238,13 @@ class IDA(WithFragility):
     upper: Array
     settings: dict[str, Any]
     seconds: float
+    early: IDA | None = None
+    late: IDA | None = None
+
+    @property
+    def at_ends(self) -> tuple[IDA, IDA] | None:
+        """The IDA of early and of late axial failure."""
+        return None if self.early is None or self.late is None else (self.early, self.late)
 
     @property
     def collapse_intensity(self) -> Array:
@@ -325,6 +335,9 @@ class IDA(WithFragility):
     def __repr__(self) -> str:
         found = self.collapse_intensity[np.isfinite(self.upper)]
         middle = f", their sample median at {np.median(found):.4g} m/s2" if found.size else ""
+        if self.at_ends and found.size:
+            ends = (np.median(end.collapse_intensity) for end in self.at_ends)
+            middle += " ({:.4g} to {:.4g} with early and late axial failure)".format(*ends)
         return (
             f"IDA({self.runs.measure.label}: {self.lower.size} curves, {len(self.runs)} runs, "
             f"{found.size} collapses{middle}; {self.seconds:.3g} s)"
@@ -337,6 +350,7 @@ def ida(
     *,
     levels: ArrayLike | Literal["search"] | CollapseSearch = "search",
     refine: Sequence[str] | None = None,
+    axial_failure: bool = False,
     **options: Unpack[RunOptions],
 ) -> IDA:
     """Run an incremental dynamic analysis: every motion at growing intensity.
@@ -354,6 +368,10 @@ def ida(
         Limit states that the search finds to within 5 % too, as ``["first_yield", "spalling"]``;
         they are then among the measures, with given levels too. The default is "first_yield"
         if that is a measure; ``[]`` leaves all to the runs made for the collapse.
+    axial_failure : bool, optional
+        Whether frames, whose members lose their axial load at a drift that is known to a factor,
+        are run at both ends of its interval too (`rbsdem.Frame.with_axial_failure`). This takes
+        three times the time; fragilities then have the dispersion that it makes.
     **options
         See `rbsdem.many.runs.RunOptions`: intensity, period, damping, collapse_drift, measures,
         initial, jobs, progress, store, shard, client; and the settings of the method, see
@@ -371,6 +389,12 @@ def ida(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
+    ends: list[IDA] = []
+    if _arguments.boolean(axial_failure, "ida: axial_failure"):
+        frames = columns_by_name(column)
+        for factor in AXIAL_FAILURE_FACTORS:
+            changed: Any = {name: _failing_at(factor, one) for name, one in frames.items()}
+            ends.append(ida(changed, motions, levels=levels, refine=refine, **options))
     if "measures" in options:
         options["measures"] = _with_drift(options["measures"], column)
     search = _search_of(levels)
@@ -393,7 +417,13 @@ def ida(
     own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
     about = {n: v for n, v in own.items() if v is not None and v is not False}
     about["levels"] = "search" if search is not None else "given"
-    return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
+    return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin, *ends)
+
+
+def _failing_at(factor: float, frame: Structure) -> Frame:
+    """Return a frame whose members lose their axial load at a factor of the drift."""
+    what = "ida: axial_failure = True: a column", Frame, "leave axial_failure out"
+    return _arguments.instance(frame, *what).with_axial_failure(factor)
 
 
 def _search_of(levels: Any) -> CollapseSearch | None:

@@ -561,8 +561,11 @@ class FrameResult(Rows):
             found.append((what, at, about))
         return found
 
-    def _failures(self) -> list[tuple[str, str, float]]:
-        """Return members that fail in shear, and that lose their axial load on a static path."""
+    def _failures(self, factor: float = 1.0) -> list[tuple[str, str, float]]:
+        """Return members that fail in shear, and that lose their axial load on a static path.
+
+        With a factor of the drift at axial failure those that would lose it there, in time too.
+        """
         found, lost, times, landmarks = [], self._lost_at, self.time, self.frame.landmarks
         for at, (name, kind) in enumerate(self.frame.kinds.items()):
             if kind.failure_drift is None or kind.failure_load is None:
@@ -577,11 +580,30 @@ class FrameResult(Rows):
             if rows.size:
                 found.append((name, FAILS, float(times[rows[0]])))
             load = np.maximum(self.member_axial[:, at], 0.0)
-            falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= kind.failure_drift)
+            limit = factor * kind.failure_drift
+            falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= limit)
             fallen = np.flatnonzero(falls & np.logical_or.accumulate(failed))
-            if fallen.size and not self.dynamic:
+            if fallen.size and (factor != 1.0 or not self.dynamic):
                 found.append((name, "lost", float(times[fallen[0]])))
         return found
+
+    def may_have_lost(self, most: float = math.inf) -> list[str]:
+        """Return members beyond the lower end of the interval of their drift at axial failure.
+
+        They have failed in shear, and carry their axial load in the model.
+
+        Parameters
+        ----------
+        most : float, optional
+            Displacement of the control node up to which a path is looked at [m].
+        """
+        gone = {event.member for event in self.events if event.name == "lost"}
+        moved = np.abs(self.displacement) <= most
+        return [
+            name
+            for name, what, at in self._failures(AXIAL_FAILURE_FACTORS[0])
+            if what == "lost" and name not in gone and moved[np.searchsorted(self.time, at)]
+        ]
 
     @cached_property
     def _lost_at(self) -> dict[str, int]:

@@ -18,7 +18,12 @@ from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.section.criteria import Criterion, criteria
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.strength import axial_failure_drift, axial_failure_interval
+from rbsdem.section.strength import (
+    ROUND_AXIAL_FAILURE_FACTORS,
+    axial_failure_drift,
+    axial_failure_interval,
+    round_axial_failure_drift,
+)
 
 
 @dataclass(frozen=True)
@@ -258,24 +263,32 @@ def _losses(result: Any) -> list[LimitState]:
 
 
 def _axial_failure(result: Any, first: dict[str, LimitState]) -> list[LimitState]:
-    """Return where a column that has failed in shear loses its axial load.
+    """Return where a column loses its axial load.
 
-    Its shear spring has yielded, and its drift is that at which the friction along the shear crack
-    carries the axial load no more (`rbsdem.section.strength.axial_failure_drift`).
+    A column whose shear spring has yielded does at the drift at which the friction along the shear
+    crack carries the load no more (`rbsdem.section.strength.axial_failure_drift`), a round one with
+    hoops, however it fails, at the latest at its `round_axial_failure_drift`.
     """
     column = result.structure
-    if "shear_yield" not in first or not isinstance(column, LayeredColumn):
+    if not isinstance(column, LayeredColumn):
         return []
     assert column.drawing is not None
-    limit = axial_failure_drift(column.drawing.section, column.axial_load)
-    path = result.path
-    drift = np.abs(path.displacement) / column.height
-    rows = np.flatnonzero((drift >= limit) & (path.time >= first["shear_yield"].time))
-    if rows.size == 0:
+    section, load, path = column.drawing.section, column.axial_load, result.path
+    drift, found = np.abs(path.displacement) / column.height, []
+    if "shear_yield" in first:
+        limit, ends = axial_failure_drift(section, load), axial_failure_interval(section, load)
+        sheared = path.time >= first["shear_yield"].time
+        source = "friction along the shear crack, Elwood and Moehle 2005"
+        found.append((np.flatnonzero((drift >= limit) & sheared), limit, source, ends))
+    limit = round_axial_failure_drift(section, load)
+    ends = ROUND_AXIAL_FAILURE_FACTORS[0] * limit, ROUND_AXIAL_FAILURE_FACTORS[1] * limit
+    source = "yield + b of circles, ASCE 41-17, table 10-9"
+    found.append((np.flatnonzero(drift >= limit), limit, source, ends))
+    reached = [one for one in found if one[0].size]
+    if not reached:
         return []
-    source = "friction along the shear crack, Elwood and Moehle 2005"
+    rows, limit, source, (low, high) = min(reached, key=lambda one: int(one[0][0]))
     state = _state(result, "axial_failure", float(rows[0]), limit, source)
-    low, high = axial_failure_interval(column.drawing.section, column.axial_load)
     return [replace(state, lower=low, upper=high)]
 
 

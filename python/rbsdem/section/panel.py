@@ -3,7 +3,8 @@
 Strength of panels with hoops by class: ACI 318-19, table 18.8.4.3. ASCE 41-17, table 10-12, has the
 same numbers for hoops at half of the depth of the column or closer, and lower ones for others. The
 spring of a panel without hoops cracks and fails at principal tensions (Pampanin and others;
-O'Reilly and Sullivan, J. Earthquake Eng. 23 (2019) 1262-1296).
+O'Reilly and Sullivan, J. Earthquake Eng. 23 (2019) 1262-1296). Panels wear with their work as the
+shear springs of members do.
 
 Beams with slabs end in nodes: width of the flange, and rigid ends.
 """
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, get_args
 
@@ -24,6 +25,8 @@ from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section, checked_section
 from rbsdem.model.springs import Pinching
 from rbsdem.section.curvature import carried_load
+from rbsdem.section.parameters import parameters
+from rbsdem.section.shear import least_endurance
 from rbsdem.section.strength import nominal_moment
 
 PanelClass = Literal["interior", "exterior", "knee"]
@@ -44,6 +47,10 @@ _STRAIN_CRACKED, _STRAIN_PEAK, _STRAIN_END = 0.0002, 0.0132, 0.020
 _LEFT = 0.053 / 0.132
 #: Pinching of the loops: force and place of the break.
 _PINCHING = {"kappa_f": 0.2, "kappa_d": 0.4}
+
+#: Twice what the hoops carry over the strength, below which fewer of them change nothing more: the
+#: bars of the columns hold the panel together, and a cycle at its peak takes a seventh.
+_FEWEST = 0.316
 
 #: Plastic shear strains with hoops where the strength is lost and where the share c is left, of
 #: interior panels and of others (ASCE 41-17, table 10-11, low axial load): lower bounds.
@@ -205,8 +212,32 @@ class JointPanel:
         """Return the rotational spring between columns and beams.
 
         Its cracking point is the first diagonal crack; it yields where the panel reaches its
-        strength, and its cap is where it begins to lose it.
+        strength, and its cap is where it begins to lose it. Its work wears it down: the energy that
+        halves its strength is the `shear_endurance` of the model, for panels whose hoops carry less
+        than half of it in proportion to the square of that share, down to a tenth.
         """
+        lines = self._lines()
+        given = parameters()
+        if not given.shear_endurance > 0.0:
+            return lines
+        # Few hoops do not hold a crack together.
+        lasts = min(1.0, max(2.0 * self._hoops / self.strength, _FEWEST) ** 2)
+        first = lines.f_c / lines.d_c if lines.d_c and lines.f_c else lines.f_y / lines.d_y
+        unit = lines.f_y * lines.d_y
+        soonest = lines.f_cap**2 * (1.0 + lines.d_cap / lines.d_pc) / (first * unit)
+        lambda_s = least_endurance(given.shear_endurance * lasts, soonest)
+        return replace(lines, lambda_s=lambda_s, fade=2.0, b0=given.shear_b0)
+
+    @property
+    def _hoops(self) -> float:
+        """Shear force that the hoops carry in the depth of the beam [N]."""
+        if self.hoops is None or not self.confined:
+            return 0.0
+        area = self.hoops.legs * math.pi * self.hoops.diameter**2 / 4.0
+        return area * self.hoops.steel.fy * 0.9 * self.beam.depth / self.hoops.spacing
+
+    def _lines(self) -> Pinching:
+        """Return the spring as it is without wear."""
         peak = self.moment
         if self.hoops is not None and self.confined:
             first = self.lever * self._shear_at(_CRACKING, hooked=False)

@@ -522,9 +522,8 @@ def shear_spring(
         # Few ties do not hold a crack together, and bars that slip split the cover.
         lasts = min(1.0, max(2.0 * ties / f_y, _FEWEST) ** 2)
         lasts /= max(bond_demand(section, span) / _USUAL_BOND, _LEAST_BOND)
-        # The rule refuses what would fall faster than the spring is stiff.
-        soonest = 1.01 * max(side.fastest for side in sides) / (stiffness / length * unit)
-        lambda_s = max(given.shear_endurance * lasts, soonest)
+        soonest = max(side.fastest for side in sides) / (stiffness / length * unit)
+        lambda_s = least_endurance(given.shear_endurance * lasts, soonest)
     lambda_h = s_min = 0.0
     if joint is not None and given.shear_decay > 0.0:
         lambda_h = joint.yield_work / given.shear_decay / unit
@@ -547,6 +546,20 @@ def shear_spring(
         kappa_d=given.shear_pinch_slip,
     )
     return spring, limits
+
+
+def least_endurance(endurance: float, soonest: float) -> float:
+    """Return the energy that halves a strength, not less than the rule of the spring takes.
+
+    Parameters
+    ----------
+    endurance : float
+        Over yield force times yield deformation.
+    soonest : float
+        f_cap^2 (1 + d_cap/d_pc) over initial stiffness, likewise: below it the strength would fall
+        faster than the spring is stiff.
+    """
+    return max(endurance, 1.01 * soonest)
 
 
 @dataclass(frozen=True)
