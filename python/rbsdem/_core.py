@@ -371,10 +371,10 @@ def _names() -> list[str]:
     return _quantities().text.splitlines()
 
 
-def note_limits() -> tuple[float, float]:
-    """Return rotation [rad] and missed share of the energy beyond which runs are noted."""
-    rotation, energy = _quantities().values.tolist()
-    return rotation, energy
+def note_limits() -> tuple[float, float, float]:
+    """Return rotation [rad], missed share of the energy and peak of the ground [m/s2] of notes."""
+    rotation, energy, ground = _quantities().values.tolist()
+    return rotation, energy, ground
 
 
 @cache

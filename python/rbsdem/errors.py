@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 #: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
@@ -112,6 +115,20 @@ class RepairWarning(UserWarning):
 _BETWEEN = ("rbsdem", "dataclasses", "functools")
 
 
+#: What has been told in a block in which each text is told once.
+_TOLD: ContextVar[set[str] | None] = ContextVar("_TOLD", default=None)
+
+
+@contextmanager
+def each_told_once() -> Iterator[None]:
+    """Make many alike, of which one warning speaks for all."""
+    token = _TOLD.set(set())
+    try:
+        yield
+    finally:
+        _TOLD.reset(token)
+
+
 def warn(text: str, kind: type[Warning] = AccuracyWarning) -> None:
     """Warn, at the line of the user's program that called the package.
 
@@ -122,6 +139,11 @@ def warn(text: str, kind: type[Warning] = AccuracyWarning) -> None:
     kind : type, optional
         Class of the warning.
     """
+    told = _TOLD.get()
+    if told is not None:
+        if text in told:
+            return
+        told.add(text)
     level, frame = 2, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] in _BETWEEN:
         level, frame = level + 1, frame.f_back

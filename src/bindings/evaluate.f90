@@ -17,7 +17,7 @@ module rbs_bindings_evaluate
    use rbs_loading_named_protocols, only: named_protocol
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
-   use rbs_output_notes, only: structure_notes, largest_small, much
+   use rbs_output_notes, only: structure_notes, largest_small, largest_ground, much
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_build, only: point_values, profile_values, section_figures, shear_values
@@ -57,8 +57,8 @@ contains
          answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
                        line//list_of(spring_figures)//line//list_of(point_values)//line// &
                        list_of(shear_values)//line//list_of(profile_values)
-         ! Limits of the notes on a run, by which runs of an ensemble are judged too.
-         answer%value = [largest_small, much]
+         ! Limits of the notes on a run, by which runs of an ensemble and records are judged too.
+         answer%value = [largest_small, much, largest_ground]
       case ('check_spring', 'spring_response')
          call evaluate_spring()
       case ('check_structure', 'modes', 'matrices')

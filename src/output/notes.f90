@@ -13,12 +13,15 @@ module rbs_output_notes
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_checks, only: is_rigid, is_strut
+   use rbs_structure_frame_frame_parts, only: frame_parts
    use rbs_structure_frame_frame_record, only: frame_record
+   use rbs_structure_frame_new_frame, only: frame_member
+   use rbs_structure_spring_location, only: flexure, layer
    use rbs_structure_structure, only: structure_type, horizontal, small, finite
    implicit none
    private
 
-   public :: drift_note, run_notes, structure_notes, largest_small, much
+   public :: drift_note, run_notes, structure_notes, largest_small, largest_ground, much
 
    !> Least and largest height of a column [m]: one in millimetres is outside.
    real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp
@@ -66,6 +69,12 @@ module rbs_output_notes
    !> of displacements: 1/4.93 - 1/7.84 in units of E I/l^2, of a cantilever with half of it at its top.
    real(wp), parameter :: much_along = 0.01_wp, error_along = 0.74_wp
 
+   !> No ground has moved with more [m/s2].
+   real(wp), parameter :: largest_ground = 5.0_wp*standard_gravity
+
+   !> Lateral strength of buildings in shares of their weight, and the rotation of the hinges that it is of.
+   real(wp), parameter :: least_strength = 0.01_wp, largest_strength = 50.0_wp, hinge_turned = 0.02_wp
+
    !> Displacements beyond this share of the height are hardly meant.
    real(wp), parameter :: far = 0.5_wp
 
@@ -79,6 +88,10 @@ contains
 
       call rotation_note(structure, summary, notes)
       if (summary%remark /= '') call notes%add(trim(summary%remark))
+      if (summary%peak_ground > largest_ground) then
+         call notes%add('the ground: its peak is '//to_text(summary%peak_ground/standard_gravity)// &
+                        ' g; no ground has moved with more than 5 g, and accelerations are in m/s2')
+      end if
       ! Explicit steps near their limit lose energy as they must; those of frames are implicit.
       if (.not. structure%is_implicit .or. .not. summary%time_step > 0.0_wp) return
       if (.not. summary%residual > much*summary%largest) return
@@ -168,6 +181,7 @@ contains
          select type (structure)
          class is (frame_type)
             call inclined_note(structure, notes)
+            call strength_note(case%parts, -sum(structure%pattern(horizontal)%force), notes)
          end select
       else
          call column_notes(case%column, notes)
@@ -270,6 +284,62 @@ contains
                         'building; '//meant)
       end subroutine check_floor
    end subroutine frame_notes
+
+   !> Lateral strength of the columns at the foot that is none beside the weight of the masses, as of moments
+   !> in kN m: that of their hinges at both ends, at a rotation beyond their yield.
+   subroutine strength_note(parts, mass, notes)
+      type(frame_parts), intent(in) :: parts
+      !> Of all nodes that move [kg]
+      real(wp), intent(in) :: mass
+      type(message_list), intent(inout) :: notes
+      real(wp) :: strength, length, hinges(2)
+      integer :: i
+
+      if (.not. mass > 0.0_wp) return
+      strength = 0.0_wp
+      do i = 1, size(parts%member)
+         associate (m => parts%member(i), a => parts%node(parts%member(i)%node(1)), &
+                    b => parts%node(parts%member(i)%node(2)))
+            if (m%after_dead_load .or. m%pinned .or. .not. (a%held(2) .or. b%held(2))) cycle
+            if (abs(a%y - b%y) < abs(a%x - b%x)) cycle
+            length = hypot(a%x - b%x, a%y - b%y) - sum(m%rigid)
+            hinges = [hinge_of(m, 0.0_wp), hinge_of(m, 1.0_wp)]
+            if (any(hinges < 0.0_wp)) return
+            strength = strength + sum(hinges)/length
+         end associate
+      end do
+      if (.not. strength > 0.0_wp) return
+      associate (share => strength/(standard_gravity*mass))
+         if (share >= least_strength .and. share <= largest_strength) return
+         call notes%add('frame: the columns at its foot carry a lateral force of some '//to_text(strength)// &
+                        ' N, '//to_text(share)//' of the weight of the masses, as those of no building; '// &
+                        'moments are in N m (170 kN m is 170e3), masses in kg (40 t is 40e3)')
+      end associate
+   end subroutine strength_note
+
+   !> Moment of the hinge at an end of a member; negative where none bounds it [N m].
+   real(wp) function hinge_of(m, position) result(moment)
+      type(frame_member), intent(in) :: m
+      !> 0 or 1
+      real(wp), intent(in) :: position
+      real(wp) :: f(1)
+      integer :: j
+
+      moment = 0.0_wp
+      associate (bends => abs(m%position - position) <= 0.0_wp .and. (m%kind == flexure .or. m%kind == layer))
+         do j = 1, size(bends)
+            if (.not. bends(j)) cycle
+            if (m%kind(j) == layer) then
+               call follow_path(m%spring(j), [m%y(j)*hinge_turned], f)
+               moment = moment + m%y(j)*f(1)
+            else
+               call follow_path(m%spring(j), [hinge_turned], f)
+               moment = moment + abs(f(1))
+            end if
+         end do
+         if (.not. any(bends) .or. any(bends .and. m%spring%rule == 'elastic')) moment = -1.0_wp
+      end associate
+   end function hinge_of
 
    !> The load along an inclined member, which does second-order work as if it were at its ends.
    subroutine inclined_note(frame, notes)

@@ -44,6 +44,8 @@ module rbs_output_summary
       integer :: steps = 0, rows = 0, events = 0
       !> Time step and stability limit of the scheme [s]; 0 in a static analysis
       real(wp) :: time_step = 0.0_wp, stable_step = 0.0_wp
+      !> Largest acceleration of the ground [m/s2]
+      real(wp) :: peak_ground = 0.0_wp
       !> Time [s] or number of the last row kept, and the displacement of the top there [m]
       real(wp) :: last_time = 0.0_wp, last_displacement = 0.0_wp
       !> Energies at the end

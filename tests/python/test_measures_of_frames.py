@@ -1,5 +1,6 @@
 """Measures of frames depend on the path alone; failures in shear have one name."""
 
+import warnings
 from dataclasses import replace
 from itertools import pairwise
 
@@ -126,6 +127,43 @@ def test_units_that_slip():
     with pytest.warns(AccuracyWarning) as told:
         rbsdem.time_history(frame, record.scaled(60.0), method="newmark", dt=0.01)
     assert any("5 g" in str(each.message) for each in told)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"columns": BEAM, "beams": COLUMN}, "exchange columns and beams"),
+        ({"dead_load": 20}, "dead_load = 20 N/m is that of no building; 10 kN/m is 10e3"),
+        ({"live_load": [3e3, 8.0]}, "live_load = 8 N/m"),
+        ({"node_load": {("outer", 2): 25}}, "node_load = 25 N is that of no building"),
+        ({"floor_mass": 150.0}, "of the weight of the masses"),
+        ({"columns": replace(COLUMN, ties=None)}, "there are no ties"),
+        ({}, ""),
+    ],
+)
+def test_drawings_that_slip_are_told_once(change, told):
+    given = {"columns": COLUMN, "beams": BEAM} | MORE | change
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        assert rbsdem.Frame.grid([3.2, 3.0], [5.0], **given).parts.mass > 0
+    assert sum(told in str(warning.message) for warning in caught) == bool(told)
+    assert told or not caught
+
+
+def test_strength_over_weight():
+    """Two columns with M_p = 200 at both ends, in kN m: 4 M_p/h over m g."""
+    kind = rbsdem.FrameMember(30e6, 0.16, 2.1e-3, yield_moment=200.0, hardening=0.0)
+    share = 4 * 200.0 / 3.0 / (40e3 * 9.80665)
+    with pytest.warns(AccuracyWarning) as caught:
+        assert rbsdem.Frame.grid([3.0], [5.0], columns=kind, beams=kind, floor_mass=40e3).parts
+    text = [str(w.message) for w in caught if "of the weight of the masses" in str(w.message)]
+    assert float(text[0].split(" N, ")[1].split()[0]) == pytest.approx(share, rel=1e-4)
+
+
+def test_drawn_storeys_in_mm():
+    for storeys, bays, name in (([3200], [5.0], "storeys"), ([3.2], [5000], "bays")):
+        with pytest.raises(rbsdem.InputError, match=f"{name} has a length .*3200 mm is 3.2"):
+            rbsdem.Frame.grid(storeys, bays, columns=COLUMN, beams=BEAM, **MORE)
 
 
 def portal(left, x, **first):

@@ -278,6 +278,8 @@ _CLOSE, _PASSES = 1e-10, 400
 _STEPS = 150
 #: Periods of buildings [s].
 _SHORTEST, _LONGEST = 0.01, 15.0
+#: Their strengths over their weights.
+_WEAKEST, _STRONGEST = 0.002, 50.0
 #: Share of its force by which a curve is off its first line where that ends.
 _STRAIGHT = 1e-3
 
@@ -333,11 +335,17 @@ class Capacity(Tabular):
         if math.isnan(self.period):
             slow = 2.0 * math.pi * math.sqrt(self.modal_mass / self.stiffness)
             object.__setattr__(self, "period", slow)
-        if not _SHORTEST <= self.period <= _LONGEST:
-            warn(
-                f"Capacity: a period of {self.period:.3g} s is that of no building; displacements "
-                "are in m, forces in N and masses in kg (1 kN is 1e3, 1 t is 1e3)"
-            )
+        share = self.force.max() / (STANDARD_GRAVITY * self.total_mass)
+        for what, value, least, most in (
+            (f"a period of {self.period:.3g} s", self.period, _SHORTEST, _LONGEST),
+            (f"a strength of {share:.3g} times the weight", share, _WEAKEST, _STRONGEST),
+        ):
+            if not least <= value <= most:
+                warn(
+                    f"Capacity: {what} is that of no building; displacements are in m, forces in "
+                    "N and masses in kg (1 kN is 1e3, 1 t is 1e3)"
+                )
+                break
 
     @classmethod
     def of_masses(

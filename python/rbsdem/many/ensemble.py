@@ -273,7 +273,7 @@ class Ensemble(Tabular):
         frames = np.array([isinstance(one, Frame) for one in each])[self.column]
         small = np.array([one.kinematics != "finite" for one in each])[self.column]
         unknown = np.full(len(self), np.nan)
-        rotation, energy = _core.note_limits()
+        rotation, energy, _ = _core.note_limits()
         turned = self.measures.get("peak_rotation", unknown) > rotation
         missed = self.measures.get("relative_energy_residual", unknown) > energy
         found = np.full(len(self), "", dtype="<U80")

@@ -18,7 +18,7 @@ from rbsdem import _arguments, _core
 from rbsdem._files import Tabular, atomic_write
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike
-from rbsdem.errors import InputError, warn
+from rbsdem.errors import InputError
 
 _MOST_DAMPING = 1.0
 # An oscillator takes a step of a twentieth of its period: shorter periods only cost time.
@@ -323,8 +323,6 @@ def _integral(values: Array, dt: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(0.5 * dt * (values[:-1] + values[1:]))])
 
 
-#: No ground has moved with more [m/s2].
-_LARGEST = 5.0 * STANDARD_GRAVITY
 _OF_THE_GROUND = ("ground_acceleration", "vertical_acceleration")
 
 
@@ -367,11 +365,6 @@ def acting(
     for name, load in loads.items():
         if isinstance(load, GroundMotion):
             motions[name] = load
-            if load.pga > _LARGEST:
-                warn(
-                    f"{load._who()}: its peak is {load.pga / STANDARD_GRAVITY:.3g} g; no ground "
-                    "has moved with more than 5 g, and accelerations are in m/s2"
-                )
         elif load is not None:
             given[name] = load
     if not motions:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY, NumberTable, plain, read_lines, read_table
 from rbsdem._types import Array
 from rbsdem.errors import InputError, RepairWarning, warn
@@ -769,9 +769,6 @@ _OTHERS = (
 _VOLUME = re.compile(r"\bCOSMOS\b|\b(un)?corrected accelerogram", re.IGNORECASE)
 _AFAD = "STRONG GROUND MOTION RECORDS OF TURKIYE"
 
-#: No ground has moved with more than about 5 g [m/s2].
-_LARGEST = 5 * STANDARD_GRAVITY
-
 
 def read_motion(
     path: str | os.PathLike[str],
@@ -833,7 +830,7 @@ def read_motion(
         )
     else:
         motion = read_columns(lines, name, stem, units, dt, column, checks=checks)
-    if checks and motion.pga > _LARGEST:
+    if checks and motion.pga > _core.note_limits()[2]:
         raise InputError(
             f"{name}: the largest acceleration is {motion.pga / STANDARD_GRAVITY:.4g} g; no ground "
             "has moved with more than 5 g. Check the unit, or say checks=False"

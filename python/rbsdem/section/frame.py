@@ -12,7 +12,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._types import ArrayLike, Self
-from rbsdem.errors import InputError, warn
+from rbsdem.errors import InputError, each_told_once, warn
 from rbsdem.model.column import NOTES_ON, Column, Damping, checked_column
 from rbsdem.model.frame import (
     FrameMember,
@@ -92,7 +92,8 @@ class Frame:
         1; or `push_x` and `push_y` of the nodes. Where no mass is given all nodes count alike.
     control_node, control : str, optional
         Node and direction ("x" or "y") whose displacement is that of the top; without it the first
-        node of the highest.
+        node of the highest. Pushes to both sides are mirrored with it at the middle of the roof, or
+        with a diaphragm.
     collapse : {"storey", "roof"}, optional
         Whose drift `collapse_drift` of an analysis is: the largest of the storeys of the grid, or
         that of the top over the height.
@@ -667,8 +668,10 @@ class Frame:
         if not drawn:
             cells = drawing.columns, drawing.beams or None
             return cls(heights, widths or None, *cells, **more)
-        members = grid.members(cls, drawing, more)
+        with each_told_once():
+            members = grid.members(cls, drawing, more)
         if NOTES_ON.get():
+            grid.note_on_sections()
             grid.note_on_bars(more["beam_load"])
         nodes = {node.name: node for node in more["nodes"]}
         for name, panel in grid.panels(drawing).items():

@@ -14,6 +14,7 @@ from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array
 from rbsdem.errors import InputError, warn
+from rbsdem.model.column import NOTES_ON, notes_off
 from rbsdem.model.frame import (
     FrameMember,
     FrameNode,
@@ -45,6 +46,10 @@ _STEP = 0.01
 _SPAN_STEP = 0.05
 #: Masses that differ by more than this from those of the loads are told.
 _DIFFER = 0.05
+#: Longest storey or bay [m]; smallest load of a beam, and of a node [N/m, N].
+_LONGEST, _LEAST_LOAD = 200.0, 100.0
+#: Depth over width of a section that is one of a beam.
+_SLIM = 1.4
 #: Beams under load with more bars below than this times those above are told.
 _MORE_BELOW = 1.25
 
@@ -212,11 +217,20 @@ def spans_of_walls(given: Any, lines: int) -> tuple[float, ...]:
 def loads_of_nodes(given: Any, lines: int) -> dict[tuple[int, int], float]:
     """Return weights on the nodes of floors by line and floor, 0 for all."""
     rules = given if isinstance(given, Mapping) else {("outer", 0): given} if given else {}
-    return {
+    found = {
         place: _arguments.number(load, "frame: node_load")
         for pair, load in rules.items()
         for place in places_of(pair, "node_load", lines)
     }
+    told_of_small("frame: node_load", list(found.values()), "N", "25 kN is 25e3")
+    return found
+
+
+def told_of_small(name: str, loads: Any, unit: str, meant: str) -> None:
+    """Tell of a load that is none of a building, as one in kN is."""
+    small = [load for load in np.ravel(loads).tolist() if 0.0 < abs(load) < _LEAST_LOAD]
+    if small and NOTES_ON.get():
+        warn(f"{name} = {small[0]:g} {unit} is that of no building; {meant}")
 
 
 class Grid:
@@ -263,6 +277,7 @@ class Grid:
                 f"frame: {name} has {values.size} values for {len(self.storeys)} storeys; give "
                 "one, or one for each"
             )
+        told_of_small(f"frame: {name}", values, "N/m", "10 kN/m is 10e3")
         return tuple(np.broadcast_to(values, len(self.storeys)).tolist())
 
     def loads(self, drawing: FrameDrawing) -> dict[str, Any]:
@@ -309,16 +324,23 @@ class Grid:
 
     def members(self, cls: Any, drawing: FrameDrawing, more: dict[str, Any]) -> list[Any]:
         """Return the kinds of all columns and beams."""
+        for name, lengths in (("storeys", self.storeys), ("bays", self.bays)):
+            if max(lengths, default=0.0) > _LONGEST:
+                raise InputError(
+                    f"frame: {name} has a length of {max(lengths):g} m, as no building; lengths "
+                    "are in m, and 3200 mm is 3.2"
+                )
         elastic = [
             {at: self.elastic.get(id(one)) for at, one in cells.items()}
             for cells in (self.columns, self.beams)
         ]
         given = {key: value for key, value in more.items() if key != "losses"}
-        standing = cls(
-            self.storeys, self.bays or None, elastic[0], elastic[1] or None,
-            **given | {"kinematics": "small", "panel": None, "damping": None},
-        )  # fmt: skip
-        axial = dict(zip(standing.parts.members, standing.parts.compression.tolist(), strict=True))
+        with notes_off():
+            parts = cls(
+                self.storeys, self.bays or None, elastic[0], elastic[1] or None,
+                **given | {"kinematics": "small", "panel": None, "damping": None},
+            ).parts  # fmt: skip
+        axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
         load = {
             at: self._rounded(self.columns[at], axial.get(Place("column", *at).name, 0.0))
             for at in self.columns
@@ -361,6 +383,23 @@ class Grid:
             return load
         step = _STEP * self._area(one) * halves_of(one)[0].concrete.fc
         return max(round(load / step), 1) * step if load > 0 else 0.0
+
+    def note_on_sections(self) -> None:
+        """Tell of sections that seem exchanged: columns like beams, and beams like columns."""
+        columns, beams = (
+            [part for one in cells.values() if is_drawn(one) for part in halves_of(one)]
+            for cells in (self.columns, self.beams)
+        )
+        columns = [one for one in columns if not isinstance(one, WallSection)]
+        if not columns or not beams:
+            return
+        for like_beam in (_has_sides, _is_slim):
+            if all(map(like_beam, columns)) and not any(map(like_beam, beams)):
+                warn(
+                    "frame: all columns are deeper than wide or have unlike bars on their two "
+                    "sides, and no beam; exchange columns and beams if that is not meant"
+                )
+                return
 
     def note_on_bars(self, beam_load: Any) -> None:
         """Tell of loaded beams with more bars below than above at their ends, which hog."""
@@ -574,6 +613,16 @@ def halves_of(one: Any) -> Halves:
 def is_drawn(one: Any) -> bool:
     """Return whether a cell has sections."""
     return one is not None and not isinstance(one, FrameMember)
+
+
+def _has_sides(section: Section) -> bool:
+    """Return whether the bars on the two sides are unlike, as those of a beam."""
+    sides = section.tension_steel, section.mirrored.tension_steel
+    return max(sides) > _MORE_BELOW * min(sides)
+
+
+def _is_slim(section: Section) -> bool:
+    return section.depth > _SLIM * section.width
 
 
 def _half_depth(one: Any, other: Any, end: int) -> float:
