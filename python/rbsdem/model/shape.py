@@ -411,7 +411,7 @@ class Section(_Fields, ABC):
         """Area of the longitudinal bars over the gross area."""
         return self.steel_area / self.gross_area
 
-    @property
+    @cached_property
     def axial_capacity(self) -> tuple[float, float]:
         """Least (tension, negative) and largest axial load without bending or confinement [N]."""
         return _core.axial_capacity(self._statement, tension="bare", confined=False)[0]
