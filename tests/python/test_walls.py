@@ -20,6 +20,7 @@ from rbsdem.section.parameters import parameters
 pytestmark = [
     pytest.mark.filterwarnings("ignore:the wall has flanges"),
     pytest.mark.filterwarnings("ignore:frame. storeys has lengths"),
+    pytest.mark.filterwarnings("ignore:wall_members. storey 1 of"),
 ]
 
 BARS, MESH = Steel(583e6, 747e6), Steel(485e6, 535e6)
@@ -206,6 +207,35 @@ def test_a_wall_that_is_cut_at_floors_is_as_strong(section):
     for storeys in (2, 4, 8):
         found = rbsdem.pushover(cut(section, storeys), drift=0.02).force.max()
         assert found == pytest.approx(force, rel=2e-3)
+
+
+def test_a_storey_that_may_buckle_out_of_its_plane_is_told():
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"storey 2 of 3.1 m is 20.7 times as"):
+        rbsdem.section.wall_members(wall(), [3.0, 3.1])
+
+
+def test_second_order_effects_of_a_column_and_of_a_storey_differ_by_slip():
+    """A column slips along its foot, a member of a frame across its chord.
+
+    Without slip both have the same force. With it the axial load of the member is moved by the slip,
+    and more of its shear slips: its force is less by N times slip over height, and as much again.
+    """
+    alone = rbsdem.section.wall(wall(), 4.56, axial_load=LOAD)
+    kinds = rbsdem.section.wall_members(wall(), [4.56], axial_loads=LOAD, shear_span=4.56)
+    top = FrameNode("N-1-1", load_y=-LOAD, push_x=1.0)
+    more = {"nodes": [top], "pattern": "nodes", "kinematics": "pdelta"}
+    stiff = rbsdem.springs.Elastic(1e13)
+    off = []
+    for column, kind in (
+        (alone, kinds[0]),
+        (replace(alone, shear=[stiff, stiff]), replace(kinds[0], shear={0.0: stiff})),
+    ):
+        push = rbsdem.pushover(column, drift=0.02)
+        frame = rbsdem.Frame([4.56], columns={(1, 1): kind}, **more)
+        off.append(push.force[-1] - rbsdem.pushover(frame, drift=0.02).force[-1])
+        off.append(LOAD * push.slip[-1, 0] / 4.56)
+    assert off[1] < off[0] < 3.0 * off[1]
+    assert abs(off[2]) < 1e-3 * push.force[-1]
 
 
 def test_a_squat_wall_that_is_cut_fails_in_shear_at_the_same_force():

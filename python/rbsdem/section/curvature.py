@@ -48,9 +48,6 @@ RANGE_OF_WALLS: dict[str, tuple[float, float, float, str]] = {
 }
 """Range of the walls that the shear relation of walls and their bands stand on, likewise."""
 
-#: Clear height over thickness, beyond which a wall may buckle out of its plane.
-_SLENDER = 20.0
-
 #: A value on an end of a range may be off it by this share.
 _SLACK = 1e-9
 

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Footing, Top
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.springs import Elastic, Gauge, Layered, Spring, unchecked
@@ -23,6 +23,9 @@ from rbsdem.section.parameters import ModelParameters, parameters
 #: Moment over shear at the foot over the height of a wall in a building: that of a triangular load
 #: on many storeys is 2/3, and fewer have more.
 SHARE_OF_HEIGHT = 0.7
+
+#: Height of a storey over the thickness of a wall, from which on it may buckle out of its plane.
+_SLENDER = 20.0
 
 #: Parts of a storey that are shorter than this share of it do not bend; how much stiffer than the
 #: wall a joint is that does not.
@@ -127,6 +130,11 @@ def wall_members(
     ------
     InputError
         If a value is refused, or a section cannot carry its axial load.
+
+    Warns
+    -----
+    AccuracyWarning
+        Where a storey is more than 20 times as high as the wall is thick.
     """
     heights = _arguments.vector(storeys, "wall_members: storeys", shape="1 or m").tolist()
     number = len(heights)
@@ -140,6 +148,16 @@ def wall_members(
     span = SHARE_OF_HEIGHT * sum(heights) if shear_span is None else shear_span
     span = column_length(span, "wall_members: shear_span")
     levels = np.concatenate(([0.0], np.cumsum(heights)))
+    ratio, storey = max(
+        (height / _checked_wall(one).thickness, i)
+        for i, (height, one) in enumerate(zip(heights, each, strict=True), 1)
+    )
+    if ratio > _SLENDER:
+        warn(
+            f"wall_members: storey {storey} of {heights[storey - 1]:g} m is {ratio:.3g} times as "
+            "high as the wall is thick; beyond 20 it may buckle out of its plane, which is not in "
+            "the model"
+        )
     made, elastic = [], 0.0
     for i, (low, high) in enumerate(pairwise(levels.tolist())):
         own = _checked_wall(each[i])
