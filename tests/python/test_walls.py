@@ -217,8 +217,8 @@ def test_a_storey_that_may_buckle_out_of_its_plane_is_told():
 def test_second_order_effects_of_a_column_and_of_a_storey_differ_by_slip():
     """A column slips along its foot, a member of a frame across its chord.
 
-    Without slip both have the same force. With it the axial load of the member is moved by the slip,
-    and more of its shear slips: its force is less by N times slip over height, and as much again.
+    Without slip both have the same force. With it the axial load of the member is moved by the
+    slip, and more of its shear slips: its force is less by N times slip over height, and as much.
     """
     alone = rbsdem.section.wall(wall(), 4.56, axial_load=LOAD)
     kinds = rbsdem.section.wall_members(wall(), [4.56], axial_loads=LOAD, shear_span=4.56)

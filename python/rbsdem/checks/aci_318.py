@@ -56,7 +56,8 @@ def wall_shear(
     """Return the nominal shear strength of a wall [N] (18.10.4.1, 18.10.4.4).
 
     A_cv (alpha_c sqrt(f'c) + rho_t f_yt), alpha_c from 0.25 for walls as high as 1.5 lengths to
-    0.17 from 2 on, and at most 0.83 sqrt(f'c) A_cv.
+    0.17 from 2 on, and at most 0.83 sqrt(f'c) A_cv. Clauses and numbers are from memory: check them
+    with your code.
 
     Parameters
     ----------
@@ -77,7 +78,8 @@ def wall_shear(
 def wall_drift(length: float, width: float, axis: float, shear_stress: float, fc: float) -> float:
     """Return the drift capacity of a wall with special boundary elements (18.10.6.2b).
 
-    (4 - l_w c/(50 b^2) - V_e/(0.66 sqrt(f'c) A_cv))/100 of the height, 0.015 at the least.
+    (4 - l_w c/(50 b^2) - V_e/(0.66 sqrt(f'c) A_cv))/100 of the height, 0.015 at the least. From
+    memory: check it with your code.
 
     Parameters
     ----------
