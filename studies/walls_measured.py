@@ -1,6 +1,6 @@
 """Walls from their drawings against tested walls: the tables of docs/walls.md.
 
-    python studies/walls_measured.py [FOLDER] [--fit] [--bands] [--write] [--figures FOLDER]
+    python studies/walls_measured.py [FOLDER] [--fit] [--bands] [--write] [--figure]
 
 FOLDER, by default that of the environment variable RBSDEM_WALLS_DIR, holds `walls.csv` (drawings of
 rectangular walls and four points of their envelopes) and `loop_NAME.csv` (digitised loops in mm and
@@ -13,7 +13,7 @@ web bars by the ratio that is stated. `--fit` chooses the constants of the shear
 and their stiffness with each publication left out in turn; `--bands` finds the scatter of
 `data/wall_spread.json` likewise, and prints how much of the left-out tests the bands hold.
 `--write` does both, and renews what follows from a version of the parameters: that file,
-`data/wall_accuracy.csv`, and the tables of docs/walls.md.
+`data/wall_accuracy.csv`, and the tables of docs/walls.md. `--figure` draws docs/walls.png.
 
 A wall is told to fail in shear, or in bending first, from its drawing: by
 `rbsdem.run.walls.failure_of`. How the tests failed is what their authors, and for walls that
@@ -40,7 +40,7 @@ import numpy as np
 import rbsdem
 from rbsdem import Bars, Boundary, Concrete, Curtain, Hoops, Steel, WallSection
 from rbsdem.run import bands
-from rbsdem.run.walls import FAILURES, failure_of
+from rbsdem.run.walls import FAILURES, HARDENED, failure_of
 from rbsdem.section.hinge import strips_of
 from rbsdem.section.parameters import ModelParameters, parameters
 from rbsdem.section.strength import column_shear_strength, nominal_point, wall_shear_strength
@@ -454,6 +454,48 @@ def fit(found: Sequence[Outcome]) -> None:
     print(f"wall_stiffness: {left_out(rows, lambda logs: abs(float(np.median(logs))))}")
 
 
+# ---- figure --------------------------------------------------------------------------------------
+
+
+def draw(found: Sequence[Outcome], folder: Path) -> None:
+    """Draw test over model by the strengths of the walls, and a loop."""
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    looks = {"flexure": ("o", "white"), "mixed": ("s", "0.6"), "shear": ("^", "black")}
+    with rbsdem.plot.style():
+        figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.1), layout="constrained")
+        for name, (marker, fill) in looks.items():
+            own = [one for one in found if one.test.failure == name]
+            left.plot(
+                [one.shear_strength / nominal_force(one.test) for one in own],
+                [one.strength for one in own],
+                marker, color=fill, markeredgecolor="black", markeredgewidth=0.5, markersize=3.5,
+                label=f"failed in {_WORDS[name]}",
+            )  # fmt: skip
+        for at in (1.0, HARDENED):
+            left.axvline(at, color="0.7", linewidth=0.6, zorder=0)
+        left.axhline(1.0, color="0.7", linewidth=0.6, zorder=0)
+        left.set(
+            xlabel="Shear strength over force of the nominal moment",
+            ylabel="Largest force, test over model", xscale="log",
+        )  # fmt: skip
+        ticks = (0.5, 0.7, 1.0, 1.4, 2.0, 3.0)
+        left.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        left.set_xticks([], minor=True)
+        left.legend(fontsize=6)
+        (d, f), result = predicted(folder, "Dazio_WSH3")
+        right.plot(1e3 * d, f / 1e3, color="0.6", linewidth=0.8, label="WSH3, digitised")
+        right.plot(1e3 * result.displacement, result.force / 1e3, "k", linewidth=0.8, label="model")
+        right.set(xlabel="Displacement (mm)", ylabel="Force (kN)")
+        right.legend(fontsize=6)
+        figure.savefig(ROOT / "docs/walls.png", dpi=130)
+
+
+def nominal_force(test: Test) -> float:
+    """Return the force of the nominal moment [N]."""
+    return nominal_point(test.section, test.axial_load)[1] / test.span
+
+
 # ---- bands ---------------------------------------------------------------------------------------
 
 #: Groups that have widths of their own, see `rbsdem.run.bands`.
@@ -638,6 +680,7 @@ def main() -> None:
     parser.add_argument("--fit", action="store_true")
     parser.add_argument("--bands", action="store_true")
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--figure", action="store_true")
     given = parser.parse_args()
     if given.folder is None:
         parser.error("give the folder, or set RBSDEM_WALLS_DIR")
@@ -659,6 +702,8 @@ def main() -> None:
     drifts(found)
     if given.fit:
         fit(found)
+    if given.figure:
+        draw(found, folder)
     if given.write:
         write(values, accuracy(found), tables)
 

@@ -18,7 +18,7 @@ FAILURES: tuple[Failure, ...] = get_args(Failure)
 
 #: Stress of bars that have yielded and harden over their yield stress, as the probable moment of
 #: ACI 318-19 has it (21.2.1 and 18.10.3; from memory).
-_HARDENED = 1.25
+HARDENED = 1.25
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def failure_of(
         force = min(force, nominal_moment(section.mirrored, axial_load) / shear_span)
     if shear_strength < force:
         return "shear"
-    return "mixed" if shear_strength < _HARDENED * force else "flexure"
+    return "mixed" if shear_strength < HARDENED * force else "flexure"
 
 
 @cache
