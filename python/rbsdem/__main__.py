@@ -30,7 +30,7 @@ def executable() -> str:
 
 
 #: Groups and keys of a case that Python reads; the executable solves springs.
-_OF_PYTHON = ("&drawing", "&infill_of", "&node_load", "&target", "&assess", "&records")
+_OF_PYTHON = ("&drawing", "&infill_of", "&node_load", "&target", "&assess", "&records", "&limit")
 _OF_FRAMES = ("live_load", "self_weight", "from_loads")
 
 

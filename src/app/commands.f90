@@ -80,6 +80,11 @@ contains
          call print_summary()
          call structure_notes(run%case, run%structure, notes)
          call run_notes(run%structure, run%task%summary, notes)
+         ! Python gives the name of the case, as it does the rest itself.
+         if (shown == path .and. run%case%judgement%asked()) then
+            call notes%add('&target, &records and &assess are for the Python package: '// &
+                           'python -m rbsdem run '//path)
+         end if
          call print_notes(notes, error)
       end if
       if (.not. allocated(error)) call report_end(run, error)

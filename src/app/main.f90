@@ -74,7 +74,7 @@ contains
          'rbsdem '//version//': reinforced-concrete columns and planar frames', &
          '', &
          'usage:', &
-         '  rbsdem run CASE.nml [--output FILE] [--quiet]   solve a case, write a csv', &
+         '  rbsdem run CASE.nml [--output FILE] [--quiet] [--report]  solve a case', &
          '  rbsdem check CASE.nml [--quiet] [--json]        find all errors of the input', &
          '  rbsdem modes CASE.nml [--count N] [--matrices]  natural frequencies, stable step', &
          '  rbsdem keys [NAME] [--json]                     keys of a group or rule, or all', &
@@ -118,7 +118,7 @@ contains
 
       select case (topic)
       case ('run')
-         call say('usage: rbsdem run CASE.nml [--output FILE] [--quiet]', error)
+         call say('usage: rbsdem run CASE.nml [--output FILE] [--quiet] [--report[=FILE]]', error)
          call say('', error)
          call say('Solves a case, writes a row for each point or step kept, and prints a summary.', error)
          call say('CASE.nml may be -, which is standard input.', error)
@@ -126,6 +126,9 @@ contains
          call say('  -o, --output FILE   file for the rows (default: the file of &output, or the', error)
          call say('                      name of the case with .csv); - is standard output', error)
          call say('  -q, --quiet         no summary, no notes and no progress', error)
+         call say('  --report[=FILE]     a report too, of CASE.nml by default CASE.html; this, drawn', error)
+         call say('                      members, &target, &records, &assess and &limit are done by', error)
+         call say('                      the Python package, whose command is python -m rbsdem, too', error)
          call say('', error)
          call say('exit code:', error)
          call say('  0  all went well', error)

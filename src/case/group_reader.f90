@@ -35,7 +35,7 @@ module rbs_case_group_reader
    !> Groups that may appear several times.
    character(len=16), parameter :: repeated(*) = [character(len=16) :: &
       spring_groups, frame_groups(2:), 'steel', 'row', 'boundary', 'curtain', 'parameter', &
-      'loading', 'assess']
+      'loading', 'assess', 'limit']
 
    !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1

@@ -11,8 +11,8 @@ module rbs_case_judgement_record
 
    public :: judgement_record
 
-   character(len=12), parameter, public :: judgement_groups(3) = [character(len=12) :: &
-      'target', 'records', 'assess']
+   character(len=12), parameter, public :: judgement_groups(4) = [character(len=12) :: &
+      'target', 'records', 'assess', 'limit']
 
    !> Accelerations as parts of g.
    type(bound_type), parameter :: part_of_g = bound_type(0.0_wp, 5.0_wp, least_open=.true.)
@@ -37,19 +37,30 @@ module rbs_case_judgement_record
 
    type, extends(visited_record) :: assess_record
       character(len=12) :: code = '', level = ''
-      real(wp) :: knowledge = unset
+      real(wp) :: knowledge = unset, detailing = unset
       logical :: primary = .true.
    contains
       procedure :: visit => visit_assess
    end type assess_record
 
+   !> Rotations of members in place of those of a code.
+   type, extends(visited_record) :: limit_record
+      character(len=32) :: member = ''
+      character(len=12) :: code = ''
+      real(wp), allocatable :: rotations(:)
+   contains
+      procedure :: visit => visit_limit
+   end type limit_record
+
    type :: judgement_record
       type(target_record), allocatable :: target
       type(records_record), allocatable :: records
       type(assess_record), allocatable :: assess(:)
+      type(limit_record), allocatable :: limit(:)
    contains
       procedure :: open_group
       procedure :: count_of
+      procedure :: asked
       procedure :: visit_group
       procedure :: validate
    end type judgement_record
@@ -60,12 +71,19 @@ contains
    subroutine open_group(self, group)
       class(judgement_record), intent(inout) :: self
       character(len=*), intent(in) :: group
+      type(limit_record), allocatable :: longer(:)
+      integer :: n
 
       select case (group)
       case ('target')
          allocate (self%target)
       case ('records')
          allocate (self%records)
+      case ('limit')
+         n = self%count_of(group)
+         allocate (longer(n + 1))
+         if (n > 0) longer(:n) = self%limit
+         call move_alloc(longer, self%limit)
       case default
          if (.not. allocated(self%assess)) allocate (self%assess(0))
          self%assess = [self%assess, assess_record()]
@@ -82,11 +100,21 @@ contains
          number = merge(1, 0, allocated(self%target))
       case ('records')
          number = merge(1, 0, allocated(self%records))
+      case ('limit')
+         number = 0
+         if (allocated(self%limit)) number = size(self%limit)
       case default
          number = 0
          if (allocated(self%assess)) number = size(self%assess)
       end select
    end function count_of
+
+   !> Whether a case asks for more than its rows.
+   pure logical function asked(self)
+      class(judgement_record), intent(in) :: self
+
+      asked = allocated(self%target) .or. self%count_of('assess') > 0
+   end function asked
 
    !> Present the keys of a group.
    subroutine visit_group(self, group, v, number)
@@ -105,7 +133,11 @@ contains
       case default
          i = self%count_of(group)
          if (present(number)) i = number
-         call self%assess(i)%visit(v)
+         if (group == 'limit') then
+            call self%limit(i)%visit(v)
+         else
+            call self%assess(i)%visit(v)
+         end if
       end select
    end subroutine visit_group
 
@@ -152,7 +184,21 @@ contains
       call v%key('knowledge', self%knowledge, '', ratio, 'ASCE 41: kappa, by which limits are multiplied', &
                  optional=.true.)
       call v%key('primary', self%primary, 'EN 1998-3: whether members are primary ones')
+      call v%key('detailing', self%detailing, '', ratio, 'EN 1998-3: factor of the ultimate rotations of '// &
+                 'members without seismic detailing or with smooth bars', optional=.true.)
    end subroutine visit_assess
+
+   subroutine visit_limit(self, v)
+      class(limit_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('member', self%member, 'name of a member or of a node with a panel, or a pattern of '// &
+                  'names, as C-*-1; the last that fits counts', required=.true.)
+      call v%key('rotations', self%rotations, 'rad', above_zero, 'its limits in place of those of '// &
+                 'the code, one for each level, ascending', 3, required=.true.)
+      call v%word('code', self%code, 'code whose levels these are, of all &assess without it', &
+                  'asce_41 en_1998_3')
+   end subroutine visit_limit
 
    !> Add a message for every value that is refused.
    subroutine validate(self, messages)
@@ -170,6 +216,10 @@ contains
       end if
       do i = 1, self%count_of('assess')
          call self%assess(i)%check('assess', messages)
+      end do
+      do i = 1, self%count_of('limit')
+         call self%limit(i)%check('limit', messages)
+         if (self%count_of('assess') == 0) call messages%add('limit: it is one of an &assess; give that too')
       end do
    end subroutine validate
 

@@ -89,7 +89,7 @@ def test_a_case_file_says_the_same(house, tmp_path):
     # What comes back of its own text is the same, and its loads stand there as they were given.
     text = read.to_namelist()
     assert "live_load = 8000" in text
-    assert "&node_load line = 4, load = 25000 /" in text
+    assert "&node_load lines = 'outer', load = 25000 /" in text
     path.write_text(text + "&loading drive = 'displacement', values = 0.05 /\n")
     assert rbsdem.read_case(path).column == house
 

@@ -8,7 +8,7 @@ import pytest
 from test_grids import CASE
 
 import rbsdem
-from rbsdem.codes import DesignSpectrum, assess, judge, target
+from rbsdem.codes import DesignSpectrum, assess, check_target, judge, target
 
 ASKED = """\
 &target method = 'en_1998', spectrum = 'en_1998', ag = 0.15, soil = 'C' /
@@ -67,12 +67,60 @@ def test_one_command_makes_rows_target_acceptance_and_report(house):
     assert (house.parent / "house_files" / "all_members.csv").is_file()
 
 
+def test_records_and_limits_of_a_case_are_those_of_the_functions(house):
+    folder = house.parent / "records"
+    folder.mkdir()
+    time = np.arange(0.0, 1.2, 0.02)
+    for name, period in (("one", 0.4), ("two", 0.7)):
+        pulse = 0.2 * np.sin(2 * np.pi * time / period)
+        np.savetxt(folder / f"{name}.csv", np.column_stack((time, pulse)), delimiter=",")
+    asked = "&records path = 'records', units = 'g' /\n"
+    asked += "&limit member = 'C-*-1', rotations = 0.01, 0.02, 0.03, code = 'asce_41' /\n"
+    asked += "&limit member = 'C-1-1', rotations = 0.001, 0.002, 0.003 /\n"
+    house.write_text(HOUSE + asked)
+    case = rbsdem.read_case(house)
+    found = judge(case)
+    push = rbsdem.pushover(case.column, displacement=0.15)
+    point = target(push, DesignSpectrum.en_1998(0.15, "C"), "en_1998")
+    hand = check_target(point, rbsdem.motions.read_motions(folder, "g"), progress=False)
+    assert list(found.check.record) == ["one", "two"]
+    np.testing.assert_array_equal(found.check.storey_drift, hand.storey_drift)
+    np.testing.assert_array_equal(found.check.factor, hand.factor)
+    near, far = (0.001, 0.002, 0.003), (0.01, 0.02, 0.03)
+    european, american = found.assessments
+    assert {row["limit_DL_rad"] for row in european.rows if row["member"] == "C-1-1"} == {0.001}
+    assert {row["source"] for row in european.rows if row["member"] == "C-2-1"} != {
+        "limits that were given"
+    }
+    limits = {"C-*-1": far, "C-1-1": near}
+    same = assess(push, "asce_41", at=point, knowledge=0.75, limits=limits)
+    np.testing.assert_array_equal(
+        american.to_pandas().select_dtypes("number"), same.to_pandas().select_dtypes("number")
+    )
+    house.write_text(case.to_namelist())
+    assert rbsdem.read_case(house) == case
+    assert repr(hand) in str(found)
+
+
+def test_words_of_lines_come_back(house):
+    text = rbsdem.read_case(house).to_namelist()
+    assert "&node_load lines = 'outer', load = 25000 /" in text
+    assert "&column_of lines = 'inner', storey = 3, kind = 'section-1' /" in text
+
+
 def test_the_executable_alone_says_what_to_type(house, run_cli):
     line = 1 + HOUSE[: HOUSE.index("&drawing")].count("\n")
     done = run_cli(["run", house])
     assert done.returncode == 2
     assert f"line {line}" in done.stderr
     assert "rbsdem draw CASE.nml" in done.stderr
+    # A case of springs is solved, and what is left to do is said.
+    springs = house.with_name("springs.nml")
+    springs.write_text(rbsdem.read_case(house).to_namelist(springs=True))
+    done = run_cli(["run", springs])
+    assert done.returncode == 0
+    assert f"python -m rbsdem run {springs}" in done.stdout
+    assert "--report[=FILE]" in run_cli(["run", "--help"]).stdout
 
 
 @pytest.mark.parametrize(

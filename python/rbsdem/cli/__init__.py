@@ -210,7 +210,7 @@ _output = click.Option(["-o", "--output"], type=FILE)
 _of_modes = [_case, click.Option(["--count"]), click.Option(["--matrices"], is_flag=True)]
 _key = click.Argument(["name"], shell_complete=_named_keys)
 for _name, _help, _params in (
-    ("run", "Solve a case.", [_case, _hush, _output]),
+    ("run", "Solve a case.", [_case, _hush, _output, click.Option(["--report"])]),
     ("check", "Find all errors of a case.", [_case, _hush, click.Option(["--json"], is_flag=True)]),
     ("modes", "Natural frequencies, stable step.", _of_modes),
     ("keys", "Keys of a group or rule, or all.", [_key, click.Option(["--json"], is_flag=True)]),

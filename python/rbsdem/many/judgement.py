@@ -154,6 +154,12 @@ def judge(case: Case, *, jobs: int | None = None, progress: bool = False) -> Jud
     at = point if point is not None and point.reached else None
     found = []
     for given in case.assess:
-        options = {name: given[name] for name in ("knowledge", "primary") if name in given}
+        names = ("knowledge", "primary", "detailing")
+        options = {name: given[name] for name in names if name in given}
+        options["limits"] = {
+            limit["member"]: limit["rotations"]
+            for limit in case.limit
+            if limit.get("code", given["code"]) == given["code"]
+        }
         found.append(assess(result, given["code"], at=at, **options))
     return Judgement(result, point, check, found, levels)

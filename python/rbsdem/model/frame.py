@@ -541,6 +541,39 @@ def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
     return [(at, storey) for storey in numbers[1] for at in numbers[0]]
 
 
+def rules_of(
+    cells: Mapping[tuple[int, int], Any], at: str, level: str, lines: int
+) -> Iterator[tuple[dict[str, Any], Any]]:
+    """Yield the keys of places and what stands there, in the words of `places_of` where they fit.
+
+    Parameters
+    ----------
+    cells : mapping
+        By line or bay and storey or floor, 0 for all.
+    at, level : str
+        Names of the keys: "line" or "bay", "storey" or "floor".
+    lines : int
+        Number of lines or bays.
+    """
+    sides = {"outer": [1, lines], "inner": list(range(2, lines))}
+    sides = {word: numbers for word, numbers in sides.items() if len(set(numbers)) > 1}
+    items = list(cells.items())
+    while items:
+        (line, storey), cell = items[0]
+        place: dict[str, Any] = {at: line or None, level: storey or None}
+        count = 1
+        for word, numbers in sides.items():
+            following = items[: len(numbers)]
+            places = [(number, storey) for number in numbers]
+            if [pair for pair, _ in following] == places and all(
+                other is cell or (isinstance(cell, float) and other == cell)
+                for _, other in following
+            ):
+                place, count = {f"{at}s": word, level: storey or None}, len(numbers)
+        yield place, cell
+        del items[:count]
+
+
 def at_place(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
     """Return what stands in a place of a grid: the last cell that fits, None without one."""
     found = [one for (at, level), one in cells.items() if at in (0, i) and level in (0, k)]

@@ -63,8 +63,8 @@ class Case:
         openings, motion, initial (path of a state).
     target, records : dict
         The values of `&target` and `&records`, by their keys; empty without them.
-    assess : list of dict
-        Those of each `&assess`. `rbsdem.codes.judge` does what they ask for.
+    assess, limit : list of dict
+        Those of each `&assess` and `&limit`. `rbsdem.codes.judge` does what they ask for.
     files : dict
         Paths of `&output`, from the folder of the case: "file", "state".
     """
@@ -82,6 +82,7 @@ class Case:
     target: dict[str, Any] = field(default_factory=dict)
     records: dict[str, Any] = field(default_factory=dict)
     assess: list[dict[str, Any]] = field(default_factory=list)
+    limit: list[dict[str, Any]] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -163,7 +164,8 @@ class Case:
         parts.append(_core.group("analysis", {"method": self.method} | settings))
         for name, given in (("target", self.target), ("records", self.records)):
             parts.append(_core.group(name, _texts(given)))
-        parts += [_core.group("assess", _texts(given)) for given in self.assess]
+        for name, several in (("assess", self.assess), ("limit", self.limit)):
+            parts += [_core.group(name, _texts(given)) for given in several]
         parts.append(_core.group("output", output | _texts(self.files)))
         return _core.evaluate("to_namelist", _core.joined(parts)).text
 
@@ -211,7 +213,10 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     more: dict[str, Any] = {
         "target": _core.typed("target", found.get("target", {})),
         "records": _core.typed("records", found.get("records", {})),
-        "assess": [_core.typed("assess", given) for given in groups.get("assess", [])],
+        **{
+            name: [_core.typed(name, given) for given in groups.get(name, [])]
+            for name in ("assess", "limit")
+        },
         "files": {name: settings.pop(name) for name in ("file", "state") if name in settings},
     }
     if "path" in more["records"]:

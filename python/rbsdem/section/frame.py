@@ -28,6 +28,7 @@ from rbsdem.model.frame import (
     index_of,
     names_of,
     rigid_lengths,
+    rules_of,
     stated,
     with_rigid_end,
 )
@@ -508,7 +509,8 @@ class Frame:
         }
         own_values = {k: v for k, v in grid.items() if v not in (None, False, "", usual.get(k))}
         parts = [_core.group("frame", own_values | more)]
-        parts += self._floors() if drawing is None else drawing.floors()
+        lines = len(self.bays or ()) + 1  # type: ignore[arg-type]
+        parts += self._floors() if drawing is None else drawing.floors(lines)
         layers: dict[Spring, int] = {}
         for (_, kind), name in names.items():
             parts += kind._groups(name, layers)
@@ -523,9 +525,9 @@ class Frame:
         for group, at, own_cells in zip(
             ("column_of", "beam_of"), ("line", "bay"), grids, strict=True
         ):
-            for (line, storey), cell in own_cells.items():
-                where = {at: line or None, "storey": storey or None}
-                parts.append(_core.group(group, where | keys_of(cell)))
+            lines = len(self.bays or ()) + (at == "line")  # type: ignore[arg-type]
+            for place, cell in rules_of(own_cells, at, "storey", lines):
+                parts.append(_core.group(group, place | keys_of(cell)))
         for node in self.nodes if drawing is None else drawing.nodes:
             parts += node._groups()
         parts += [member._group(names[stated(member.kind)]) for member in members]
@@ -747,7 +749,7 @@ class Frame:
             "wall_spans": drawing.wall_spans or None,
         }
         statement = self._state(cells, drawn, drawing, **more)
-        statement += infill_groups(drawing.infills)
+        statement += infill_groups(drawing.infills, len(self.bays or ()))  # type: ignore[arg-type]
         for section, name in drawings.items():
             about = {"name": _core.Text(name), "version": _core.Text(VERSION)}
             statement += _core.group("drawing", about) + section.drawing()

@@ -23,6 +23,7 @@ from rbsdem.model.frame import (
     at_place,
     cells_of,
     places_of,
+    rules_of,
     with_rigid_end,
 )
 from rbsdem.model.materials import Ties
@@ -105,8 +106,8 @@ class FrameDrawing:
     wall_spans: tuple[float, ...] = ()
     made: _core.Statement | None = field(default=None, repr=False)
 
-    def floors(self) -> Iterator[_core.Statement]:
-        """Yield the groups of floors and of loads of nodes."""
+    def floors(self, lines: int) -> Iterator[_core.Statement]:
+        """Yield the groups of floors, and of loads of nodes on a number of lines."""
         masses = () if self.floor_mass is None else np.atleast_1d(self.floor_mass).tolist()
         columns = {"mass": masses, "dead_load": self.dead_load, "live_load": self.live_load}
         # Floors that are alike are stated once.
@@ -122,12 +123,11 @@ class FrameDrawing:
             }
             if any(of_floor.values()):
                 yield _core.group("floor", {"floor": i + 1 if count > 1 else None, **of_floor})
-        for (line, floor), load in self.node_load.items():
-            place = {"line": line or None, "floor": floor or None}
+        for place, load in rules_of(self.node_load, "line", "floor", lines):
             yield _core.group("node_load", place | {"load": load})
 
 
-def infill_groups(cells: Mapping[tuple[int, int], Infill | None]) -> _core.Statement:
+def infill_groups(cells: Mapping[tuple[int, int], Infill | None], bays: int) -> _core.Statement:
     """Return the groups of infills and of their places."""
     infills = list(dict.fromkeys(one for one in cells.values() if one is not None))
     taken = {one.name for one in infills}
@@ -139,10 +139,9 @@ def infill_groups(cells: Mapping[tuple[int, int], Infill | None]) -> _core.State
         given = {name: getattr(one, name) for name in ("thickness", "fm", "strength", "peak_drift")}
         given |= {"opening_length": length, "opening_height": height}
         parts.append(_core.group("infill", {"name": _core.Text(names[one])} | given))
-    for (bay, storey), cell in cells.items():
-        where = {"bay": bay or None, "storey": storey or None}
+    for place, cell in rules_of(cells, "bay", "storey", bays):
         kind = _core.Text(names.get(cell, "none"))
-        parts.append(_core.group("infill_of", where | {"kind": kind}))
+        parts.append(_core.group("infill_of", place | {"kind": kind}))
     return _core.joined(parts)
 
 
