@@ -159,7 +159,15 @@ def test_nodes_without_hoops_lose_their_strength_in_cycles(storeys, bays, load):
         [3.2] * storeys, bays, columns=C, beams=B, panel_hoops="none", ends=0.0, dead_load=load,
         kinematics="pdelta",
     )  # fmt: skip
-    nodes = [replace(own, push_x=float(own.name == f"N-1-{storeys}")) for own in frame.nodes]
+    # Panels that wear lose their strength too early to snap back.
+    bare = {"lambda_s": 0.0, "b0": 0.0}
+    nodes = [
+        replace(
+            own, push_x=float(own.name == f"N-1-{storeys}"),
+            panel=own.panel and replace(own.panel, **bare),
+        )
+        for own in frame.nodes
+    ]  # fmt: skip
     frame = replace(frame, pattern="nodes", nodes=nodes)
     turns = np.outer([0.005, 0.01, 0.02, 0.03, 0.05], [1, -1, 1, -1]).ravel()
     run = rbsdem.cyclic(frame, displacement=turns * frame.height)
