@@ -8,10 +8,13 @@
 !> has one. There a plain block elimination fails; the mixed one used here does not (W. Govaerts, Stable
 !> solvers and block elimination for bordered systems, SIAM J. Matrix Anal. Appl. 12 (1991) 469-483).
 !>
-!> A matrix that is not positive definite is solved by LAPACK's elimination with pivots. The others are
-!> factored here: for a half-width up to 3 the columns that an elimination changes stay in registers. LAPACK's
-!> band routines take several times as long, because they call other routines for vectors of three numbers.
+!> A matrix with small pivots, or with negative ones where nothing is scaled, is solved by LAPACK's
+!> elimination with pivots. The others are factored here: for a half-width up to 3 the columns that an
+!> elimination changes stay in registers. LAPACK's band routines take several times as long, because they call
+!> other routines for vectors of three numbers. Of a wide matrix the columns before the first one that has
+!> changed keep their factor.
 module rbs_base_band_matrix
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band
    use rbs_base_tolerances, only: no_stiffness, round_off
@@ -26,6 +29,9 @@ module rbs_base_band_matrix
    !> Half-width of the elimination in registers.
    integer, parameter :: narrow = 3
 
+   !> Pivots of the scaled matrix above this, in size, lose no more digits than a step of refinement recovers.
+   real(wp), parameter :: least_pivot = 1.0e-4_wp
+
    type :: band_matrix
       !> Number of unknowns, and of diagonals below the main one
       integer :: size = 0, width = 0
@@ -39,6 +45,10 @@ module rbs_base_band_matrix
       integer :: negative = 0
       !> Its factor: 1/D and L
       real(wp), allocatable :: triangle(:, :)
+      !> Whether this serves for solutions
+      logical, private :: serves = .false.
+      !> The band of a wide factor, as it was factored last, and D (size)
+      real(wp), allocatable, private :: factored(:, :), diagonal(:)
       !> One over root of the stiffness, and zeros (size + half-width); the matrix as elimination with pivots
       !> takes it
       real(wp), allocatable, private :: scale(:), general(:, :)
@@ -75,6 +85,8 @@ contains
       self%width = width
       rows = max(width, narrow) + 1
       allocate (self%band(rows, unknowns), self%triangle(rows, unknowns), source=0.0_wp)
+      if (width > narrow) allocate (self%factored(rows, unknowns), self%diagonal(unknowns), &
+                                    source=huge(1.0_wp))
       if (.not. present(stiffness)) return
       self%stiffness = stiffness
       self%scale = [1.0_wp/sqrt(stiffness), (0.0_wp, i=2, rows)]
@@ -103,15 +115,16 @@ contains
       if (self%width <= narrow) then
          call factor_narrow(self%size, self%band, self%triangle, self%negative)
       else
-         self%triangle(:, :) = self%band
-         call factor_wide(self%size, self%width, self%triangle, self%negative)
+         call factor_wide(self%size, self%width, self%band, self%factored, self%triangle, self%diagonal, &
+                          self%negative)
       end if
       self%has_pivots = .false.
       self%positive = self%negative == 0
+      self%serves = self%positive
+      if (.not. allocated(self%scale)) return
       ! The factor holds one over the pivots.
-      if (self%positive .and. allocated(self%scale)) then
-         self%positive = maxval(self%triangle(1, :)) < 1.0_wp/no_stiffness
-      end if
+      self%positive = self%positive .and. maxval(self%triangle(1, :)) < 1.0_wp/no_stiffness
+      self%serves = maxval(abs(self%triangle(1, :))) < 1.0_wp/least_pivot
    end subroutine factor
 
    pure subroutine scale_band(n, rows, scale, band)
@@ -166,25 +179,32 @@ contains
       end do
    end subroutine factor_narrow
 
-   !> The same for any half-width, in place.
-   pure subroutine factor_wide(n, width, band, negative)
+   !> The same for any half-width. Columns before the first one that has changed stay.
+   pure subroutine factor_wide(n, width, band, factored, triangle, diagonal, negative)
       integer, intent(in) :: n, width
-      real(wp), intent(inout) :: band(width + 1, n)
+      real(wp), intent(in) :: band(width + 1, n)
+      !> Band that was factored before, replaced by this one, and its factor: 1/D and L; D
+      real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), diagonal(n)
       integer, intent(out) :: negative
-      real(wp) :: pivot, l
-      integer :: i, j, last
+      real(wp) :: column(width + 1)
+      integer :: first, i, j, k
 
-      negative = 0
-      do j = 1, n
-         pivot = band(1, j)
-         if (.not. pivot > tiny(1.0_wp)) call count_negative(pivot, negative)
-         band(1, j) = 1.0_wp/pivot
-         last = min(width, n - j)
-         do i = 1, last
-            l = band(1 + i, j)*band(1, j)
-            band(:1 + last - i, j + i) = band(:1 + last - i, j + i) - l*band(1 + i:1 + last, j)
+      do first = 1, n
+         if (.not. all(abs(band(:, first) - factored(:, first)) <= 0.0_wp)) exit
+      end do
+      negative = count(.not. diagonal(:first - 1) > 0.0_wp)
+      do j = first, n
+         factored(:, j) = band(:, j)
+         column = band(:, j)
+         do k = max(1, j - width), j - 1
+            i = j - k
+            column(:1 + width - i) = column(:1 + width - i) &
+                                     - (triangle(1 + i, k)*diagonal(k))*triangle(1 + i:, k)
          end do
-         band(2:1 + last, j) = band(2:1 + last, j)*band(1, j)
+         if (.not. column(1) > tiny(1.0_wp)) call count_negative(column(1), negative)
+         diagonal(j) = column(1)
+         triangle(1, j) = 1.0_wp/diagonal(j)
+         triangle(2:, j) = column(2:)*triangle(1, j)
       end do
    end subroutine factor_wide
 
@@ -242,7 +262,7 @@ contains
       b = b*factor(1, :)
       do j = n, 1, -1
          last = min(width, n - j)
-         b(j) = b(j) - dot_product(factor(2:1 + last, j), b(j + 1:j + last))
+         b(j) = b(j) - inner_product(last, factor(2:1 + last, j), b(j + 1:j + last))
       end do
    end subroutine solve_wide
 
@@ -336,7 +356,8 @@ contains
       if (.not. regular) return
       if (.not. self%positive) then
          ! One step of refinement. Its size also shows whether the system has a solution.
-         self%right(:) = self%right - times(self, x) + self%border(:, 1)*y
+         self%right(:) = self%right + self%border(:, 1)*y
+         call subtract_product(self%size, size(self%band, 1), self%band, x, self%right)
          call eliminate(self, self%right, g - dot_product(self%border(:, 2), x), self%more, change, regular)
          regular = regular .and. maxval(abs(self%more)) <= no_answer*maxval(abs(x))
          if (.not. regular) return
@@ -378,7 +399,7 @@ contains
       integer :: j
 
       regular = .true.
-      if (.not. self%positive) then
+      if (.not. (self%positive .or. self%serves)) then
          call solve_with_pivots()
          return
       end if
@@ -428,21 +449,25 @@ contains
 
    end subroutine solve_scaled
 
-   !> The scaled matrix times a column.
-   pure function times(self, x) result(product)
-      type(band_matrix), intent(in) :: self
-      real(wp), intent(in) :: x(:)
-      real(wp) :: product(self%size)
+   !> Subtract a symmetric matrix times a column.
+   pure subroutine subtract_product(n, rows, band, x, g)
+      integer, intent(in) :: n, rows
+      !> Lower band
+      real(wp), intent(in) :: band(rows, n), x(n)
+      real(wp), intent(inout) :: g(n)
+      real(wp) :: product
       integer :: i, j
 
-      product = self%band(1, :)*x
-      do j = 1, self%size
-         do i = j + 1, min(j + self%width, self%size)
-            product(i) = product(i) + self%band(1 + i - j, j)*x(j)
-            product(j) = product(j) + self%band(1 + i - j, j)*x(i)
+      do j = 1, n
+         product = band(1, j)*x(j)
+         !$omp simd reduction(+:product)
+         do i = 1, min(rows - 1, n - j)
+            product = product + band(1 + i, j)*x(j + i)
+            g(j + i) = g(j + i) - band(1 + i, j)*x(j)
          end do
+         g(j) = g(j) - product
       end do
-   end function times
+   end subroutine subtract_product
 
    pure subroutine scale_rows(self, m, b)
       type(band_matrix), intent(in) :: self
