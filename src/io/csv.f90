@@ -36,18 +36,22 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=32), allocatable :: labels(:)
       character(len=:), allocatable :: line
-      integer :: i
+      integer :: i, at
 
       do i = 1, size(comments)
          call put_line(self, '# '//trim(comments(i)), error)
          if (allocated(error)) return
       end do
       call self%channels%get_labels(self%units, labels, self%si)
-      line = trim(labels(1))
-      do i = 2, size(labels)
-         line = line//','//trim(labels(i))
+      allocate (character(len=(len(labels) + 1)*size(labels)) :: line)
+      at = 0
+      do i = 1, size(labels)
+         associate (label => trim(labels(i))//',')
+            line(at + 1:at + len(label)) = label
+            at = at + len(label)
+         end associate
       end do
-      call put_line(self, line, error)
+      call put_line(self, line(:at - 1), error)
       self%buffer = repeat(' ', width*size(labels))
    end subroutine write_head
 

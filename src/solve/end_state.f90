@@ -20,7 +20,7 @@ module rbs_solve_end_state
    implicit none
    private
 
-   public :: end_state, checkpoint_type, static_state, moving_state
+   public :: end_state, checkpoint_type, stamp_of, static_state, moving_state
 
    !> Number of the format; it changes with the contents.
    integer, parameter :: format = 3
@@ -107,7 +107,7 @@ contains
 
       first = 0.0_wp
       first(1) = format
-      call find_stamp(structure, first(2:3))
+      first(2:3) = stamp_of(structure)
       first(6) = structure%n
       first(7) = structure%kinematics
       first(8) = size(structure%location)
@@ -161,7 +161,7 @@ contains
                              trim(kinematics(structure%kinematics))//"', under which it would not be in "// &
                              'equilibrium; run both analyses with the same kinematics')
          else
-            call find_stamp(structure, expected)
+            expected = stamp_of(structure)
             if (all(abs(expected - value(2:3)) <= 0.0_wp)) return
             call fatal_error(error, bad_input, 'initial: the state belongs to a column with other '// &
                              'springs or lengths; begin from a result of the same column (loading, '// &
@@ -195,12 +195,16 @@ contains
    end subroutine restore
 
    !> Two numbers that differ between structures with other springs or sizes.
-   subroutine find_stamp(structure, stamp)
+   function stamp_of(structure) result(stamp)
       class(structure_type), intent(in) :: structure
-      real(wp), intent(out) :: stamp(2)
+      real(wp) :: stamp(2)
       integer(int64) :: hash
       integer :: i, seen
 
+      if (any(structure%stamp > 0.0_wp)) then
+         stamp = structure%stamp
+         return
+      end if
       hash = 88172645463325252_int64
       seen = 0
       do i = 1, size(structure%length)
@@ -215,7 +219,7 @@ contains
          end associate
       end do
       call split(hash, stamp)
-   end subroutine find_stamp
+   end function stamp_of
 
    !> The name of a rule and its parameters, those of layers too.
    recursive subroutine mix_rule(hash, name, rule)

@@ -121,6 +121,8 @@ module rbs_structure_structure
       type(series_tangent), allocatable :: initial_tangent(:)
       !> Loads in the order of their signals (signals)
       type(load_pattern) :: pattern(signals)
+      !> Two numbers that mark its springs and sizes in a state, 0 as long as none was asked for
+      real(wp) :: stamp(2) = 0.0_wp
    contains
       !> Changes of the deformations of the springs from those of the unknowns
       procedure(gather), deferred :: spring_rates
