@@ -5,7 +5,7 @@ module rbs_solve_begin_make_structure
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_case_record, only: case_record
-   use rbs_solve_end_state, only: end_state
+   use rbs_solve_end_state, only: end_state, stamp_of
    use rbs_solve_begin_make_column, only: make_column
    use rbs_solve_modal_matrices, only: find_modal_momenta
    use rbs_solve_modal_modes, only: modes_type, find_modes
@@ -86,8 +86,10 @@ contains
       end associate
       call check_stable(frame, error)
       if (allocated(error)) return
+      frame%stamp = stamp_of(frame)
       call put_dead_load(frame, before, error)
       if (allocated(error)) return
+      call frame%set_damping()
       if (allocated(case%column%damping%modal)) then
          frame%damped = .true.
          frame%modal_damping = case%column%damping%modal

@@ -77,6 +77,7 @@ contains
          do i = 1, frame%members
             call loaded%compress(i, share*frame%element(i)%compression)
          end do
+         call loaded%set_second_order()
          tangent%is_known = .false.
          call loaded%linearise(loaded%initial_stiffness, tangent, unstable)
          matrix%band = 0.0_wp

@@ -11,6 +11,7 @@
 module rbs_solve_time_implicit_balance
    use rbs_base_arrays, only: swap
    use rbs_base_band_matrix, only: band_matrix
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_tolerances, only: no_stiffness, round_off_of_sums
@@ -91,6 +92,9 @@ module rbs_solve_time_implicit_balance
       !> Step and lines that the factor belongs to
       real(wp), private :: factor_step = -1.0_wp, factor_resistance = 0.0_wp
       integer, private :: factor_version = -1, factor_damping = -1
+      !> What modal damping takes of a correction, per work of the correction on the momenta of each mode
+      !> (unknowns, modes)
+      real(wp), allocatable, private :: damped(:, :)
       !> Whether an unknown without mass is held, as its pivot is round-off
       logical :: holds = .false.
    contains
@@ -481,6 +485,25 @@ contains
       call self%fit(step, state, h)
       dx = step%r
       call self%matrix%solve(dx, regular)
+      if (allocated(self%damped)) call damp_modes(state%motion%structure%modal_momenta)
+
+   contains
+
+      !> Modal damping by Woodbury's formula. Its flexibility is that of the elastic structure, in which the
+      !> modes are uncoupled; a trial leaves the little that yielding changes in this.
+      subroutine damp_modes(momenta)
+         real(wp), intent(in) :: momenta(:, :)
+         real(wp) :: share(size(momenta, 2))
+         integer :: j
+
+         do j = 1, size(share)
+            share(j) = inner_product(size(dx), momenta(:, j), dx)
+         end do
+         do j = 1, size(share)
+            dx = dx - share(j)*self%damped(:, j)
+         end do
+      end subroutine damp_modes
+
    end subroutine find_correction
 
    !> Factor the tangent anew, if a line, the step or the axial load has changed.
@@ -495,28 +518,60 @@ contains
           (size(step%damping_tangent) == 0 .or. step%damping_version == self%factor_damping) .and. &
           .not. (state%motion%second_order .and. state%motion%varies)) return
       call step%fit_elements(state)
-      call set_tangent()
+      associate (structure => state%motion%structure)
+         if (allocated(structure%modal_momenta) .and. abs(h - self%factor_step) > 1.0e-14_wp*h) then
+            call damp_modes(structure%modal_momenta)
+         end if
+         call set_tangent(state%springs%k, step%now%tangent)
+         if (allocated(self%initial)) call hold_free()
+      end associate
+      self%factor_step = h
+      self%factor_damping = step%damping_version
+      self%factor_resistance = step%resistance
+      self%factor_version = state%springs%version
 
    contains
 
-      !> Tangent of the step on the present lines, and its factor.
-      subroutine set_tangent()
+      !> Motions by the momenta of the modes, in the elastic structure, times what damping leaves of them.
+      subroutine damp_modes(momenta)
+         real(wp), intent(in) :: momenta(:, :)
+         real(wp) :: of_damping
+         logical :: regular
+         integer :: j
+
+         of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
+         associate (structure => state%motion%structure)
+            call set_tangent(structure%initial_stiffness, structure%initial_tangent)
+         end associate
+         self%damped = momenta
+         call self%matrix%solve(self%damped, regular)
+         do j = 1, size(momenta, 2)
+            associate (motion => self%damped(:, j))
+               motion = motion/(1.0_wp/of_damping + inner_product(size(motion), momenta(:, j), motion))
+            end associate
+         end do
+      end subroutine damp_modes
+
+      !> Tangent of the step on lines of the springs, and its factor.
+      subroutine set_tangent(k, tangent)
+         real(wp), intent(in) :: k(:)
+         type(series_tangent), intent(in) :: tangent(:)
          real(wp) :: of_mass, of_damping
          integer :: i
 
          of_damping = step%gamma/(step%beta*h)
-         associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
+         associate (motion => state%motion, structure => state%motion%structure)
             of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) &
                       + (1.0_wp - step%alpha_f)*of_damping*structure%mass_damping
-            self%k = springs%k
+            self%k = k
             if (step%resistance > 0.0_wp) self%k = self%k + step%resistance*structure%initial_stiffness
             if (structure%tangent_damping) then
-               self%k = self%k + (of_damping*structure%spring_damping)*max(springs%k, 0.0_wp)
+               self%k = self%k + (of_damping*structure%spring_damping)*max(k, 0.0_wp)
             else if (motion%springs_damp) then
                self%k = self%k + of_damping*motion%joint_damping
             end if
             self%matrix%band = 0.0_wp
-            call structure%add_stiffness(self%k, step%now%tangent, self%matrix%band)
+            call structure%add_stiffness(self%k, tangent, self%matrix%band)
             if (structure%stiffness_damping > 0.0_wp) then
                call structure%add_damping(of_damping, step%damping_tangent, self%matrix%band)
             end if
@@ -529,12 +584,7 @@ contains
             self%stiffness = self%matrix%band(1, :)
             self%holds = .false.
             call self%matrix%factor()
-            if (allocated(self%initial)) call hold_free()
          end associate
-         self%factor_step = h
-         self%factor_damping = step%damping_version
-         self%factor_resistance = step%resistance
-         self%factor_version = state%springs%version
       end subroutine set_tangent
 
       !> Where the pivot of an unknown without mass is round-off, it stays where it is.

@@ -25,8 +25,7 @@ module rbs_solve_time_newton
    real(wp), parameter :: progress = 0.95_wp
 
    type, abstract, extends(stepper_type) :: newton_stepper
-      !> Most trials; mostly two or three are needed. Modal damping is not in the tangent: a trial leaves of
-      !> its share as much as the damping ratio
+      !> Most trials; mostly two or three are needed
       integer :: most_trials = 400
       !> The residual has vanished below this share of the forces; where round-off does not let it, below the
       !> second

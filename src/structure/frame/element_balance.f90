@@ -10,7 +10,7 @@ module rbs_structure_frame_element_balance
 
    public :: end_motion, motion_terms, chord_rotation, compatibility_error, set_tangent, balance_ends, &
              balance_of_ends
-   public :: add_end_forces, add_second_order, add_band, add_geometric_band
+   public :: add_end_forces, add_band, add_geometric_band
    public :: spring_motion, drop_round_off, energy_of_rest
 
 contains
@@ -28,21 +28,12 @@ contains
             q = [b(1, 3)*x(at(3)) + b(1, 6)*x(at(6)), 0.0_wp, 0.0_wp]
          end associate
       else
-         q = motion_along(e%from_unknowns, e%unknown, x)
+         associate (row => e%from_unknowns, at => e%unknown)
+            q = row(:, 1)*x(at(1)) + row(:, 2)*x(at(2)) + row(:, 3)*x(at(3)) &
+                + row(:, 4)*x(at(4)) + row(:, 5)*x(at(5)) + row(:, 6)*x(at(6))
+         end associate
       end if
    end function end_motion
-
-   !> Three motions that are rows of the displacements of the ends.
-   pure function motion_along(row, at, x) result(q)
-      real(wp), intent(in) :: row(3, 6)
-      !> Unknowns of the ends
-      integer, intent(in) :: at(6)
-      real(wp), intent(in), contiguous :: x(:)
-      real(wp) :: q(3)
-
-      q = row(:, 1)*x(at(1)) + row(:, 2)*x(at(2)) + row(:, 3)*x(at(3)) &
-          + row(:, 4)*x(at(4)) + row(:, 5)*x(at(5)) + row(:, 6)*x(at(6))
-   end function motion_along
 
    !> Sizes of the terms that elongation and rotations of an element are sums of.
    pure function motion_terms(e, x) result(terms)
@@ -205,38 +196,19 @@ contains
       real(wp), intent(in) :: s(3)
       !> (unknowns)
       real(wp), intent(inout) :: g(:)
+      integer :: k
 
       if (e%is_panel) then
          g(e%unknown(3)) = g(e%unknown(3)) + s(1)*e%from_unknowns(1, 3)
          g(e%unknown(6)) = g(e%unknown(6)) + s(1)*e%from_unknowns(1, 6)
       else
-         call add_along(e%from_unknowns, e%unknown, s, g)
+         associate (row => e%from_unknowns, at => e%unknown)
+            do k = 1, 6
+               g(at(k)) = g(at(k)) + (s(1)*row(1, k) + s(2)*row(2, k) + s(3)*row(3, k))
+            end do
+         end associate
       end if
    end subroutine add_end_forces
-
-   !> Forces on the unknowns of forces along three rows.
-   pure subroutine add_along(row, at, s, g)
-      real(wp), intent(in) :: row(3, 6), s(3)
-      integer, intent(in) :: at(6)
-      real(wp), intent(inout) :: g(:)
-      integer :: k
-
-      do k = 1, 6
-         g(at(k)) = g(at(k)) + (s(1)*row(1, k) + s(2)*row(2, k) + s(3)*row(3, k))
-      end do
-   end subroutine add_along
-
-   !> Second-order forces of the compression of an element, N sum l r (r . x): rows r are the rotations of its
-   !> rigid ends and of its chord. Bending off the chord belongs to the elastic rest.
-   pure subroutine add_second_order(e, x, g)
-      type(frame_element), intent(in) :: e
-      real(wp), intent(in), contiguous :: x(:)
-      real(wp), intent(inout), contiguous :: g(:)
-
-      associate (turned => motion_along(e%lean, e%unknown, x))
-         call add_along(e%lean, e%unknown, e%compression*[e%rigid, e%length]*turned, g)
-      end associate
-   end subroutine add_second_order
 
    !> Add B' A B of an element to a lower band, B its elongation and rotations per unknown.
    pure subroutine add_band(e, a, band)

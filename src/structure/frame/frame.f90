@@ -7,14 +7,14 @@ module rbs_structure_frame_frame
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
+   use rbs_base_sparse_matrix, only: sparse_matrix, sparse_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_frame_element, only: frame_element
    use rbs_structure_frame_element_balance, only: end_motion, motion_terms, compatibility_error, &
                                                   set_tangent, balance_ends, balance_of_ends, &
-                                                  add_end_forces, &
-                                                  add_second_order, add_band, add_geometric_band, &
+                                                  add_end_forces, add_band, add_geometric_band, &
                                                   spring_motion, drop_round_off
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_structure, only: structure_type, lateral, signals, top_axial
@@ -73,6 +73,9 @@ module rbs_structure_frame_frame
       !> When members are lost, see `frame_member` (members)
       real(wp), allocatable :: failure_drift(:), failure_load(:), shear_drift(:), lost_at(:)
       logical :: may_lose = .false.
+      !> Second-order stiffness of the axial forces under dead load, and damping in proportion to the initial
+      !> stiffness; not allocated where there is none
+      type(sparse_matrix), allocatable :: second_order, damping
    contains
       procedure :: linearise
       procedure :: damp
@@ -84,6 +87,8 @@ module rbs_structure_frame_frame
       procedure :: build_later
       procedure :: set_compression
       procedure :: compress
+      procedure :: set_second_order
+      procedure :: set_damping
       procedure :: clear_round_off
       procedure :: size_of_parts
       procedure :: member_forces
@@ -143,6 +148,16 @@ module rbs_structure_frame_frame
          !> [N]
          real(wp), intent(in) :: compression
       end subroutine compress
+
+      !> Assemble the second-order stiffness of the axial forces.
+      pure module subroutine set_second_order(self)
+         class(frame_type), intent(inout) :: self
+      end subroutine set_second_order
+
+      !> Assemble the damping in proportion to the initial stiffness.
+      pure module subroutine set_damping(self)
+         class(frame_type), intent(inout) :: self
+      end subroutine set_damping
 
       !> Work of the dead load.
       pure real(wp) module function work_of_dead_load(self, d) result(work)
@@ -260,7 +275,7 @@ contains
       real(wp), intent(in), contiguous :: v(:)
       type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: g(:)
-      real(wp) :: a(3, 3), q(3)
+      real(wp) :: s(3)
       integer :: i
 
       if (allocated(self%modal_momenta)) then
@@ -268,11 +283,13 @@ contains
             g = g - self%modal_momenta(:, i)*inner_product(size(v), self%modal_momenta(:, i), v)
          end do
       end if
-      if (.not. self%stiffness_damping > 0.0_wp) return
-      do i = 1, size(self%element)
-         call damping_of(self, i, tangent, a)
-         q = end_motion(self%element(i), v)
-         call add_end_forces(self%element(i), -(a(:, 1)*q(1) + a(:, 2)*q(2) + a(:, 3)*q(3)), g)
+      if (allocated(self%damping)) call self%damping%subtract_product(v, g)
+      if (.not. self%tangent_damping) return
+      do i = 1, size(tangent)
+         associate (k => tangent(i)%stiffness, q => end_motion(self%element(i), v))
+            s = k(:, 1)*q(1) + k(:, 2)*q(2) + k(:, 3)*q(3)
+         end associate
+         call add_end_forces(self%element(i), -self%stiffness_damping*s, g)
       end do
    end subroutine damp
 
@@ -281,27 +298,14 @@ contains
       real(wp), intent(in) :: factor
       type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: a(3, 3)
       integer :: i
 
-      do i = 1, size(self%element)
-         call damping_of(self, i, tangent, a)
-         call add_band(self%element(i), factor*a, band)
+      if (allocated(self%damping)) call self%damping%add_to(factor, band)
+      if (.not. self%tangent_damping) return
+      do i = 1, size(tangent)
+         call add_band(self%element(i), factor*self%stiffness_damping*tangent(i)%stiffness, band)
       end do
    end subroutine add_damping
-
-   pure subroutine damping_of(frame, element, tangent, a)
-      type(frame_type), intent(in) :: frame
-      integer, intent(in) :: element
-      type(series_tangent), intent(in) :: tangent(:)
-      real(wp), intent(out) :: a(3, 3)
-
-      if (frame%tangent_damping) then
-         a = frame%stiffness_damping*tangent(element)%stiffness
-      else
-         a = frame%stiffness_damping*frame%initial_tangent(element)%stiffness
-      end if
-   end subroutine damping_of
 
    !> Changes of the deformations from those of the unknowns. Those of layers follow from their joints.
    subroutine spring_rates(self, tangent, dx, dd)
@@ -405,9 +409,9 @@ contains
                misfit = compatibility_error(e, end_motion(e, x), d, part)
                call balance_ends(e, size(f), misfit, part, self%dead_force, f, tangent(i), s, correction)
                call add_end_forces(e, -s, g)
-               if (self%axially_loaded .and. .not. e%is_panel) call add_second_order(e, x, g)
             end associate
          end do
+         if (allocated(self%second_order)) call self%second_order%subtract_product(x, g)
       end associate
    end subroutine forces
 
@@ -434,16 +438,13 @@ contains
       axial = self%element(:size(axial))%compression
    end subroutine axial_forces
 
-   !> Add the derivatives of second-order forces, with their sign turned.
+   !> Add the derivatives of second-order forces, with their sign turned; they are those of the dead load.
    subroutine add_geometric(self, k, band)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: k(:)
       real(wp), intent(inout), contiguous :: band(:, :)
-      integer :: i
 
-      do i = 1, self%members
-         call add_geometric_band(self%element(i), k(i), band)
-      end do
+      if (allocated(self%second_order)) call self%second_order%add_to(1.0_wp, band)
    end subroutine add_geometric
 
    pure subroutine rotations(self, d, rotation)

@@ -29,6 +29,7 @@ contains
       do i = 1, self%members
          if (self%element(i)%after_dead_load) call self%element(i)%disconnect()
       end do
+      call self%set_second_order()
    end procedure leave_out_later
 
    module procedure build_later
@@ -54,6 +55,7 @@ contains
             self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
          end associate
       end do
+      call self%set_second_order()
       ! The elastic rest has changed.
       self%initial_tangent%is_known = .false.
       call self%linearise(self%initial_stiffness, self%initial_tangent, i)
@@ -64,6 +66,32 @@ contains
       self%element(element)%compression = compression
       call self%element(element)%set_rest(merge(compression, 0.0_wp, self%axially_loaded))
    end procedure compress
+
+   module procedure set_second_order
+      real(wp) :: band(self%half_width + 1, self%unknowns)
+      integer :: i
+
+      if (.not. self%axially_loaded) return
+      band = 0.0_wp
+      do i = 1, self%members
+         call add_geometric_band(self%element(i), self%element(i)%compression, band)
+      end do
+      self%second_order = sparse_of(band)
+   end procedure set_second_order
+
+   module procedure set_damping
+      real(wp) :: band(self%half_width + 1, self%unknowns)
+      integer :: i
+
+      if (self%tangent_damping .or. .not. self%stiffness_damping > 0.0_wp) return
+      band = 0.0_wp
+      do i = 1, size(self%element)
+         associate (k => self%initial_tangent(i)%stiffness)
+            call add_band(self%element(i), self%stiffness_damping*k, band)
+         end associate
+      end do
+      self%damping = sparse_of(band)
+   end procedure set_damping
 
    module procedure work_of_dead_load
       real(wp) :: misfit(3), turned(2)
@@ -88,14 +116,15 @@ contains
       integer :: i
 
       associate (x => d(self%springs + 1:self%joints%before))
-         g = 0.0_wp
          energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%member_springs))
          do i = 1, self%members
             associate (e => self%element(i))
                energy = energy + energy_of_rest(e, compatibility_error(e, end_motion(e, x), d, 1.0_wp))
-               if (self%axially_loaded) call add_second_order(e, x, g)
             end associate
          end do
+         if (.not. allocated(self%second_order)) return
+         g = 0.0_wp
+         call self%second_order%subtract_product(x, g)
          energy = energy - 0.5_wp*sum(g*x)
       end associate
    end procedure potential_energy
