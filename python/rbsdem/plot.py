@@ -46,3 +46,4 @@ from rbsdem.output.style import new_axes as new_axes
 from rbsdem.output.style import save as save
 from rbsdem.output.style import style as style
 from rbsdem.output.tables import table as table
+from rbsdem.output.units import units as units

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import asdict, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ import pytest
 from test_doors import random_case
 
 import rbsdem
-from rbsdem import _core
+from rbsdem import InputError, _core, plot
+from rbsdem.output.units import paper
 
 KEYS = _core.keys()
 
@@ -174,3 +176,42 @@ def test_unit_of_a_loading_comes_before_those_of_the_case(tmp_path, case_text, u
     (tmp_path / "case.nml").write_text(converted(text, {"length": "cm"}))
     displacement = rbsdem.read_case(tmp_path / "case.nml").displacement
     assert displacement[1] == 8 * UNITS["length"][unit or "cm"]
+
+
+def test_figures_tables_and_reports_speak_other_units_in_a_block(tmp_path):
+    push = rbsdem.pushover(rbsdem.examples.portal(), drift=0.02)
+    kip, inch = UNITS["force"]["kip"], UNITS["length"]["in"]
+    states = plot.table(push.limit_states())
+    with plot.units("in", "kip"):
+        drawn = plot.pushover(push)
+        heading = str(plot.table(push.limit_states())).splitlines()
+    line = drawn.get_lines()[0]
+    np.testing.assert_allclose(line.get_xdata(), push.displacement / inch, rtol=1e-15)
+    np.testing.assert_allclose(line.get_ydata(), push.base_shear / kip, rtol=1e-15)
+    assert (drawn.get_xlabel(), drawn.get_ylabel()) == (
+        "Roof displacement (in)", "Base shear (kip)"
+    )  # fmt: skip
+    # The drift above the axis is that of the height, whatever the unit below.
+    (top,) = drawn.child_axes
+    drawn.figure.draw_without_rendering()
+    ratio = np.ptp(top.get_xlim()) / np.ptp(drawn.get_xlim())
+    assert ratio == pytest.approx(100 * inch / push.frame.height, rel=1e-12)
+    assert "kip" in heading[1] or "kip" in heading[0]
+    # Outside of the block all is as before.
+    assert str(plot.table(push.limit_states())) == str(states)
+    assert "kN" in str(states)
+    for length, force in product(("mm", "cm", "m", "in"), ("kN", "N", "MN", "kip", "lbf", "tf")):
+        with plot.units(length, force):
+            size, weight = paper("m")[0], paper("N")[0]
+            arm = size if length == "in" else 1.0
+            assert paper("N m")[0] == pytest.approx(weight * arm, rel=1e-14)
+            assert paper("N/m")[0] == pytest.approx(weight / size, rel=1e-14)
+    with plot.units("in", "kip"):
+        assert paper("Pa")[0] * 1e6 == pytest.approx(0.1450377377, rel=1e-9)
+    checked = rbsdem.codes.assess(push, "en_1998_3")
+    page = rbsdem.report(checked, tmp_path / "a.html", units=("in", "kip")).read_text()
+    assert "Shear strength kip" in page.replace("<br>", " ").replace("\n", " ")
+    for units in ("in", ("ft", "kip"), ("in",)):
+        with pytest.raises(InputError, match="units"):
+            rbsdem.report(checked, tmp_path / "b.html", units=units)
+    assert not (tmp_path / "b.html").exists()

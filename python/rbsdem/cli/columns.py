@@ -621,9 +621,10 @@ def explore(case: Path | None, no_browser: bool, port: int, tests: Path | None) 
 @click.option("--title", help="title; default that of the case")
 @click.option("--author", default="", help="for the head of the report")
 @click.option("--project", default="", help="for the head of the report")
+@click.option("--paper", default="mm,kN", metavar="A,B", help="units of a frame's: in,kip")
 @_tests
 def report(
-    case: Path, output: Path | None, title: str | None, tests: Path | None, **head: str
+    case: Path, output: Path | None, title: str | None, paper: str, tests: Path | None, **head: str
 ) -> int:
     r"""Write a case as one html file that opens offline and prints on A4.
 
@@ -639,7 +640,8 @@ def report(
         refuse_other_page(file)
     if isinstance(found.column, Frame):
         title = title or found.title
-        _tell_files(write_record(found.run(), file, title=title, **head))
+        units: Any = tuple(paper.split(","))
+        _tell_files(write_record(found.run(), file, title=title, units=units, **head))
         return 0
     start = start_of(case)
     near = None if tests is None else tests_of(tests)

@@ -22,6 +22,7 @@ from rbsdem.output.style import (
     drift_axis,
     line_of,
 )
+from rbsdem.output.units import factor, labelled, paper
 from rbsdem.run.analysis import FrameModes
 from rbsdem.run.frame_result import FAILS, FrameResult
 from rbsdem.section.frame import Frame
@@ -106,9 +107,9 @@ _BESIDE = 0.016
 
 #: Forces along members, and titles of their figures.
 _FORCES = {
-    "moment": "Moments (kN m)",
-    "shear": "Shear forces (kN)",
-    "axial": "Axial forces (kN)",
+    "moment": ("Moments", "N m"),
+    "shear": ("Shear forces", "N"),
+    "axial": ("Axial forces", "N"),
 }
 #: Points at which a member is drawn, in shares of its clear length.
 _SHARES = np.linspace(0, 1, 25)
@@ -249,7 +250,8 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
     """
     _arguments.instance(result, "plot.pushover", FrameResult)
     with axes_or_new(ax, (4.6, 3.2)) as drawn:
-        drawn.plot(1e3 * result.displacement, 1e-3 * result.base_shear, **line_of(MODEL_LINE, line))
+        way = factor("m") * result.displacement, factor("N") * result.base_shear
+        drawn.plot(*way, **line_of(MODEL_LINE, line))
         for what, mark in _MARKS.items():
             events = [event for event in result.events if event.name == what]
             if not events:
@@ -259,8 +261,7 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
             more = f", then {len(events) - 1} more" if len(events) > 1 else ""
             end = f"at {float(first.end):.2f}" if first.end[:1].isdigit() else first.end
             drawn.plot(
-                1e3 * result.displacement[rows],
-                1e-3 * result.base_shear[rows],
+                *(values[rows] for values in way),
                 **_HINGE | mark,
                 label=", ".join(filter(None, (first.member, end, _VERBS[what]))) + more,
             )
@@ -276,7 +277,7 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
         else:
             drawn.axhline(0.0, **ZERO_LINE)
             drawn.axvline(0.0, **ZERO_LINE)
-        drawn.set(xlabel="Roof displacement (mm)", ylabel="Base shear (kN)")
+        drawn.set(xlabel=labelled("Roof displacement", "m"), ylabel=labelled("Base shear", "N"))
         drawn.tick_params(right=True)
         drift_axis(drawn, result.frame.height)
     return drawn
@@ -380,7 +381,7 @@ def member_forces(
     _arguments.instance(result, "plot.member_forces", FrameResult)
     force = _arguments.choice(force, "plot.member_forces: force", tuple(_FORCES))
     row = _row(result, row)
-    structure, name = result.frame, _FORCES[force]
+    structure, (name, unit) = result.frame, _FORCES[force]
     members = list(structure.geometry.values())
     values = [_forces(result, i, members[i], force, row) for i in range(len(members))]
     largest = max(float(np.abs(value).max()) for value in values) or 1.0
@@ -397,9 +398,9 @@ def member_forces(
             drawn.fill(*outline.T, facecolor=face, edgecolor="none", zorder=1.5)
             drawn.plot(*outline.T, color="black", linewidth=0.5, zorder=2)
         for i, at in _numbered(members, values, force):
-            _write_force(drawn, members[i], values[i], at, reach)
+            _write_force(drawn, members[i], values[i], at, (reach, factor(unit)))
         _undeformed(drawn, structure, True)
-        drawn.set_title(_heading(result, row, name))
+        drawn.set_title(_heading(result, row, labelled(name, unit)))
         _dress(drawn, structure)
     return drawn
 
@@ -706,8 +707,11 @@ def _forces(result: FrameResult, i: int, member: MemberGeometry, force: str, row
     return along(*ends, np.linspace(0, 1, 21))
 
 
-def _write_force(ax: Axes, member: MemberGeometry, values: Array, at: int, reach: float) -> None:
-    """Write a force of a member beside it."""
+def _write_force(
+    ax: Axes, member: MemberGeometry, values: Array, at: int, scales: tuple[float, float]
+) -> None:
+    """Write a force of a member beside it; scales are those of the line and of the number."""
+    reach, on_paper = scales
     share, value = at / (values.size - 1), float(values[at])
     tip = member.foot + share * member.clear * member.axis + reach * value * member.normal
     outward, axial = np.sign(value) * member.normal, values.size == 3
@@ -715,7 +719,7 @@ def _write_force(ax: Axes, member: MemberGeometry, values: Array, at: int, reach
     side = "left" if (outward[0] > 0.5 if member.upright else share < 0.5) else "right"
     inside = 0.3 < share < 0.7 and not member.upright
     ax.annotate(
-        f"{abs(1e-3 * value):.0f}{', tension' if axial and value < 0 else ''}",
+        f"{_short(abs(on_paper * value))}{', tension' if axial and value < 0 else ''}",
         tuple(tip),
         xytext=3.0 * outward + (6.0 * (1 - 2 * share) * member.axis if member.upright else 0.0),
         textcoords="offset points",
@@ -725,6 +729,10 @@ def _write_force(ax: Axes, member: MemberGeometry, values: Array, at: int, reach
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.2, "alpha": 0.7},
         zorder=6,
     )
+
+
+def _short(value: float) -> str:
+    return f"{value:.0f}" if value >= 9.5 else f"{value:.2g}"
 
 
 def _heading(result: FrameResult, row: int, what: str) -> str:
@@ -783,29 +791,32 @@ def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
     sa = np.array([found.spectrum.sa(one) for one in inside]) / STANDARD_GRAVITY
     sd = np.array([found.spectrum.sd(one) for one in inside])
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        drawn.plot(1e3 * sd, sa, **{**TEST_LINE, "linestyle": "-"}, label=found.spectrum.name)
+        drawn.plot(
+            factor("m") * sd, sa, **{**TEST_LINE, "linestyle": "-"}, label=found.spectrum.name
+        )
         shown = line_of({**MODEL_LINE, "label": "push-over"}, line)
-        drawn.plot(1e3 * curve.displacement / gamma, curve.force * per_g, **shown)
+        drawn.plot(factor("m") * curve.displacement / gamma, curve.force * per_g, **shown)
         corners = np.array([0.0, lines.yield_displacement, lines.end_displacement])
         forces = np.array([0.0, lines.yield_force, lines.end_force])
         look: dict[str, Any] = {"color": "#c0392b", "linewidth": 0.8, "zorder": 4}
-        drawn.plot(1e3 * corners / gamma, forces * per_g, **look, label="two lines")
+        drawn.plot(factor("m") * corners / gamma, forces * per_g, **look, label="two lines")
         top = 1.08 * max(float(sa.max()), float(curve.force.max()) * per_g)
         # The capacity spectrum has its point on the secant.
         shown_period = found.factors.get("T_sec", found.period)
         slope = (2.0 * np.pi / shown_period) ** 2 / STANDARD_GRAVITY
-        drawn.plot([0.0, 1e3 * top / slope], [0.0, top], **{**ZERO_LINE, "color": "0.6"})
+        drawn.plot([0.0, factor("m") * top / slope], [0.0, top], **{**ZERO_LINE, "color": "0.6"})
         name = _NAMES[found.method]
         if found.reached:
             height = found.base_shear * per_g
-            drawn.vlines(1e3 * at, 0.0, height, **{**look, "linestyle": ":"})
-            words = f"{name}: roof {1e3 * found.displacement:.0f} mm"
-            drawn.plot([1e3 * at], [height], **_POINT, linestyle="none", label=words)
+            drawn.vlines(factor("m") * at, 0.0, height, **{**look, "linestyle": ":"})
+            scale, unit = paper("m")
+            words = f"{name}: roof {_short(scale * found.displacement)} {unit}"
+            drawn.plot([factor("m") * at], [height], **_POINT, linestyle="none", label=words)
         else:
             drawn.plot([], [], linestyle="none", label=f"{name}: beyond the end of the curve")
         drawn.set_xlim(0.0, 1.25e3 * max(at, min(curve.largest / gamma, 1.5 * at)))
         drawn.set_ylim(0.0, top)
-        drawn.set(xlabel="Spectral displacement (mm)", ylabel="Spectral acceleration (g)")
+        drawn.set(xlabel=labelled("Spectral displacement", "m"), ylabel="Spectral acceleration (g)")
         look = {"frameon": True, "framealpha": 0.85, "edgecolor": "none"}
         drawn.legend(loc="upper right", handlelength=1.6, **look)
         drawn.tick_params(right=True, top=True)

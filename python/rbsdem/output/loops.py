@@ -32,6 +32,7 @@ from rbsdem.output.style import (
     style,
     style_of,
 )
+from rbsdem.output.units import factor, labelled
 from rbsdem.run.column_result import Result
 from rbsdem.run.limit_states import LimitStates
 from rbsdem.run.rows import ENERGIES
@@ -129,7 +130,7 @@ def loop(
         drawn.plot(d, f, **line_of(MODEL_LINE, line))
         _dress(drawn, height)
         if shaken:
-            drawn.set_ylabel("Base shear (kN)")
+            drawn.set_ylabel(labelled("Base shear", "N"))
     return drawn
 
 
@@ -255,18 +256,19 @@ def envelope(envelope: Envelope, *, method: Method | None = None, ax: Axes | Non
         The axes.
     """
     with axes_or_new(ax) as drawn:
-        x, y = envelope.displacement * 1e3, envelope.force * 1e-3
+        x, y = envelope.displacement * factor("m"), envelope.force * factor("N")
         drawn.plot(x, y, **MODEL_LINE)
         if method is not None:
             lines = envelope.idealise(method)
             corners = np.array([0.0, lines.yield_displacement, lines.end_displacement])
-            drawn.plot(corners * 1e3, lines.force(corners) * 1e-3, **TEST_LINE, label=lines.source)
-            at = lines.yield_displacement * 1e3, lines.yield_force * 1e-3
+            path = corners * factor("m"), lines.force(corners) * factor("N")
+            drawn.plot(*path, **TEST_LINE, label=lines.source)
+            at = lines.yield_displacement * factor("m"), lines.yield_force * factor("N")
             drawn.plot(*at, **TEST_POINTS | {"color": "black"})
             drawn.legend(loc="lower right")
         drawn.set_xlim(left=0.0, auto=True)
         drawn.set_ylim(bottom=0.0, auto=True)
-        drawn.set(xlabel="Top displacement (mm)", ylabel="Lateral force (kN)")
+        drawn.set(xlabel=labelled("Top displacement", "m"), ylabel=labelled("Lateral force", "N"))
     return drawn
 
 
@@ -289,7 +291,8 @@ def limit_states(states: LimitStates, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (4.6, 3.4)) as drawn:
         loop(result, height=result.structure.height, ax=drawn, color="0.55", linewidth=0.6)
         for state, marker in zip(states, _MARKERS, strict=False):
-            at, name = (1e3 * state.displacement, 1e-3 * state.force), state.name.replace("_", " ")
+            at = factor("m") * state.displacement, factor("N") * state.force
+            name = state.name.replace("_", " ")
             drawn.plot(*at, marker=marker, label=name, **_STATE)
         if len(states):
             drawn.legend(loc="upper left", fontsize=6.5, handletextpad=0.2, borderaxespad=0.3)
@@ -375,11 +378,12 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (6.2, 3.4)) as drawn:
         if found.test is not None:
             d, f = found.test
-            drawn.plot(100 * d / height, 1e-3 * f, **TEST_LINE, label="test")
-        drift, force = 100 * result.drift, 1e-3 * result.loop_force
+            drawn.plot(100 * d / height, factor("N") * f, **TEST_LINE, label="test")
+        drift, force = 100 * result.drift, factor("N") * result.loop_force
         drawn.plot(drift, force, color="0.6", linewidth=0.6, zorder=2.5, label="model")
         for line in found.backbones:
-            way = _above_zero(100 * line.drift, 1e-3 * line.force(found.span, found.leaning))
+            strength = factor("N") * line.force(found.span, found.leaning)
+            way = _above_zero(100 * line.drift, strength)
             drawn.plot(*way, label=line.name, **_BACKBONE, **_BACKBONES[line.name])
         drifts = found.to_pandas()
         for row, source, label, fill in _DAMAGE:
@@ -389,7 +393,7 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
         drawn.axhline(0.0, **ZERO_LINE)
         drawn.axvline(0.0, **ZERO_LINE)
         drawn.margins(x=0.03, y=0.06)
-        force_name = "Base shear (kN)" if result.dynamic else "Lateral force (kN)"
+        force_name = labelled("Base shear" if result.dynamic else "Lateral force", "N")
         drawn.set(xlabel="Drift ratio (%)", ylabel=force_name)
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.5, handlelength=3.0)
@@ -408,7 +412,7 @@ def _above_zero(drift: Array, force: Array) -> tuple[Array, Array]:
 
 
 def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return displacements [mm] and forces [kN] of a result, a test or a pair of arrays."""
+    """Return displacements and forces on paper of a result, a test or a pair of arrays."""
     names = (f"{name}: displacements", f"{name}: forces")
     d, f = map(_arguments.vector, loop_pair(curve, name), names)
     if d.shape != f.shape or d.size == 0:
@@ -416,7 +420,7 @@ def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float
             f"{name}: displacements have shape {d.shape}, forces {f.shape}; "
             f"they must be vectors of one length"
         )
-    return d * 1e3, f * 1e-3
+    return d * factor("m"), f * factor("N")
 
 
 def _dress(ax: Axes, height: float | None) -> None:
@@ -438,7 +442,7 @@ def _dress(ax: Axes, height: float | None) -> None:
     steps = [1, 2, 2.5, 5, 10]
     ax.xaxis.set_major_locator(MaxNLocator(nbins=7, symmetric=True, steps=steps))
     ax.yaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=steps))
-    ax.set(xlabel="Top displacement (mm)", ylabel="Lateral force (kN)")
+    ax.set(xlabel=labelled("Top displacement", "m"), ylabel=labelled("Lateral force", "N"))
     ax.tick_params(right=True, top=height is None)
     if height is not None:
         height = _arguments.number(height, "height")
@@ -449,13 +453,13 @@ def _dress(ax: Axes, height: float | None) -> None:
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 
-#: Quantities that are drawn over time: factor to the unit on paper, and label.
-_OVER: dict[str, tuple[float, str]] = {
-    "displacement": (1e3, "Top displacement (mm)"),
-    "drift": (1e2, "Drift ratio (%)"),
-    "force": (1e-3, "Lateral force (kN)"),
-    "base_shear": (1e-3, "Base shear (kN)"),
-    "base_moment": (1e-3, "Base moment (kN m)"),
+#: Quantities that are drawn over time, and their units.
+_OVER = {
+    "displacement": ("Top displacement", "m"),
+    "drift": ("Drift ratio", "drift"),
+    "force": ("Lateral force", "N"),
+    "base_shear": ("Base shear", "N"),
+    "base_moment": ("Base moment", "N m"),
 }
 
 #: Grays and dashes for several lines on one pair of axes, legible in print.
@@ -505,12 +509,12 @@ def history(
     """
     _arguments.instance(result, "history: result", Result)
     over = _arguments.choice(over, "over", _OVER)
-    factor, label = _OVER[over]
+    words, unit = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
-        drawn.plot(result.time, factor * getattr(result, over), **line_of(MODEL_LINE, line))
+        drawn.plot(result.time, factor(unit) * getattr(result, over), **line_of(MODEL_LINE, line))
         if not any(each.get_gid() == "zero" for each in drawn.get_lines()):
             drawn.axhline(0.0, gid="zero", **ZERO_LINE)
-        _along(result, drawn, label)
+        _along(result, drawn, labelled(words, unit))
     return drawn
 
 
@@ -539,9 +543,9 @@ def energy(result: Result, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (5.2, 2.8)) as drawn:
         names = [name for name in ENERGIES if name != "residual" and np.any(result.energy[name])]
         for name, line in zip(names, _LINES, strict=False):
-            values = result.energy[name] * 1e-3
+            values = result.energy[name] * factor("J")
             drawn.plot(result.time, values, **line, lw=0.8, label=_ENERGY_LABELS[name])
-        _along(result, drawn, "Energy (kJ)")
+        _along(result, drawn, labelled("Energy", "J"))
         if names:
             drawn.legend(loc="best", handlelength=2.4)
     return drawn
@@ -597,10 +601,11 @@ def profile(
             name = f"{moment:g} s" if result.dynamic else f"point {moment:g}"
             places, moved = _displacements(state, joints)
             axes[0].plot(100 * moved / height, places, **line, lw=0.9, label=name)
-            shear = np.append(state["shear"], state["shear"][-1]) * 1e-3
+            shear = np.append(state["shear"], state["shear"][-1]) * factor("N")
             axes[1].step(shear, joints, **line, lw=0.9)
-            axes[2].plot(np.append(state["moment"], 0.0) * 1e-3, joints, **line, lw=0.9)
-        for ax, label in zip(axes, ("Drift (%)", "Shear (kN)", "Moment (kN m)"), strict=True):
+            axes[2].plot(np.append(state["moment"], 0.0) * factor("N m"), joints, **line, lw=0.9)
+        labels = "Drift (%)", labelled("Shear", "N"), labelled("Moment", "N m")
+        for ax, label in zip(axes, labels, strict=True):
             ax.axvline(0.0, **ZERO_LINE)
             ax.set(ylim=(0.0, height), xlabel=label)
             ax.tick_params(right=True, top=True)

@@ -23,6 +23,7 @@ from rbsdem.output.style import (
     style,
 )
 from rbsdem.output.tables import table
+from rbsdem.output.units import factor, labelled
 from rbsdem.run.bands import Band
 
 if TYPE_CHECKING:
@@ -52,17 +53,17 @@ def band(found: Band, *, test: Any = None, ax: Axes | None = None, **line: Any) 
     matplotlib.axes.Axes
         The axes.
     """
-    path = 1e3 * np.concatenate(([0.0], np.cumsum(np.abs(np.diff(found.displacement)))))
+    path = factor("m") * np.concatenate(([0.0], np.cumsum(np.abs(np.diff(found.displacement)))))
     measured = None if test is None else found.rows_of(test)
     with axes_or_new(ax, (6.0, 2.8)) as drawn:
-        low, high = found.lower / 1e3, found.upper / 1e3
+        low, high = factor("N") * found.lower, factor("N") * found.upper
         drawn.fill_between(path, low, high, color="0.86", lw=0, label="80 % band")
         model = line_of(MODEL_LINE | {"label": "Prediction"}, line)
-        drawn.plot(path, found.force / 1e3, **model)
-        drawn.plot(path, found.median / 1e3, **_MEDIAN_LINE, label="Median of the samples")
+        drawn.plot(path, factor("N") * found.force, **model)
+        drawn.plot(path, factor("N") * found.median, **_MEDIAN_LINE, label="Median of the samples")
         if measured is not None:
-            drawn.plot(path, measured / 1e3, **TEST_LINE, label="Test")
-        drawn.set(xlabel="Path of displacement (mm)", ylabel="Force (kN)")
+            drawn.plot(path, factor("N") * measured, **TEST_LINE, label="Test")
+        drawn.set(xlabel=labelled("Path of displacement", "m"), ylabel=labelled("Force", "N"))
         drawn.margins(x=0.01)
         # Above the axes: the band fills them.
         drawn.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
@@ -88,9 +89,9 @@ def prediction(row: Prediction) -> AxesArray:
         left.axhline(0.0, **ZERO_LINE)
         left.axvline(0.0, **ZERO_LINE)
         if test is not None:
-            left.plot(1e3 * test.displacement, 1e-3 * test.test_force, **TEST_LINE)
-        left.plot(1e3 * row.displacement, 1e-3 * row.force, **MODEL_LINE)
-        left.set(xlabel="Displacement (mm)", ylabel="Force (kN)")
+            left.plot(factor("m") * test.displacement, factor("N") * test.test_force, **TEST_LINE)
+        left.plot(factor("m") * row.displacement, factor("N") * row.force, **MODEL_LINE)
+        left.set(xlabel=labelled("Displacement", "m"), ylabel=labelled("Force", "N"))
         if row.band is not None:
             measured = None if test is None else test.test_force
             band(row.band, test=measured, ax=right)

@@ -24,6 +24,7 @@ from rbsdem.output.style import (
     style,
     style_of,
 )
+from rbsdem.output.units import factor, labelled, paper
 from rbsdem.run.column_result import Result
 from rbsdem.section import shear
 from rbsdem.section.criteria import buckling_strain
@@ -99,14 +100,18 @@ def moment_curvature(
     """
     with axes_or_new(ax, (3.5, 2.8)) as drawn:
         core = {"label": "Core confined" if diagram.confined else "Not confined"}
-        x, y = 1e3 * diagram.curvature, diagram.moment / 1e3
+        x, y = factor("1/m") * diagram.curvature, factor("N m") * diagram.moment
         drawn.plot(x, y, **line_of(MODEL_LINE | core, line))
         if idealise is not None:
             corners = diagram.idealise(idealise).to_pandas().to_numpy()
-            drawn.plot(*(corners * (1e3, 1e-3)).T, **TEST_LINE, label=idealise.capitalize())
+            drawn.plot(
+                *(corners * (factor("1/m"), factor("N m"))).T,
+                **TEST_LINE,
+                label=idealise.capitalize(),
+            )
         _draw_events(diagram.events, float(diagram.curvature[-1]), drawn)
         _dress(drawn)
-        drawn.set_ylim(bottom=min(0.0, float(np.min(diagram.moment)) / 1e3))
+        drawn.set_ylim(bottom=min(0.0, factor("N m") * float(np.min(diagram.moment))))
     return drawn
 
 
@@ -116,14 +121,14 @@ def _draw_events(
     for name in names:
         point = getattr(events, name)
         if point is not None and point.curvature <= furthest:
-            at = 1e3 * point.curvature, point.moment / 1e3
+            at = factor("1/m") * point.curvature, factor("N m") * point.moment
             ax.plot(*at, label=name.capitalize(), **_MARK, **EVENT_MARKS[name])
 
 
 def _dress(ax: Axes) -> None:
     ax.set_xlim(left=0.0)
     ax.set_ylim(bottom=0.0)
-    ax.set(xlabel="Curvature (mrad/m)", ylabel="Moment (kN m)")
+    ax.set(xlabel=labelled("Curvature", "1/m"), ylabel=labelled("Moment", "N m"))
     ax.tick_params(right=True, top=True)
     ax.legend(loc="lower right", handletextpad=0.3)
 
@@ -154,7 +159,8 @@ def section_springs(springs: SectionSprings) -> Axes | AxesArray:
         ax = axes[-1]
         load, last = springs.axial_load, 1.1 * events.ultimate.curvature
         points = [p for p in (events.cracking, events.yielding, events.ultimate) if p]
-        x, y = zip((0.0, 0.0), *((1e3 * p.curvature, p.moment / 1e3) for p in points), strict=True)
+        along, up = factor("1/m"), factor("N m")
+        x, y = zip((0.0, 0.0), *((along * p.curvature, up * p.moment) for p in points), strict=True)
         ax.plot(x, y, **TEST_LINE, label="Spring")
         curvature = last * np.linspace(0.0, 1.0, 150) ** 2
         laws: dict[Tension, Line] = {
@@ -163,7 +169,7 @@ def section_springs(springs: SectionSprings) -> Axes | AxesArray:
         }
         for tension, look in laws.items():
             moments, _ = strains(drawing, load, curvature, tension, springs.confined)
-            ax.plot(1e3 * curvature, moments / 1e3, **MODEL_LINE | look)
+            ax.plot(along * curvature, up * moments, **MODEL_LINE | look)
         _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))
         _dress(ax)
     return axes if panels > 1 else ax
@@ -187,28 +193,31 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
     from matplotlib.patches import Circle, Polygon  # noqa: PLC0415
 
     with axes_or_new(ax, (2.6, 2.8)) as drawn:
-        outline = 1e3 * section.outline()
+        on_paper, unit = paper("m")
+        outline = on_paper * section.outline()
         w, h = np.ptp(outline, axis=0)
         drawn.add_patch(Polygon(outline, **_OUTLINE))
         looks = ((_TIE, 2.0), (_INSIDE, 2.0), (_TIE, 2.2), (_INSIDE, 2.2))
         for line, (look, order) in zip(hoop_lines(section), looks, strict=False):
-            drawn.add_patch(Polygon(1e3 * line, zorder=order, **look))
+            drawn.add_patch(Polygon(on_paper * line, zorder=order, **look))
         for leg in section.inner_legs():
-            drawn.add_patch(Polygon(1e3 * leg, zorder=2, **_TIE))
+            drawn.add_patch(Polygon(on_paper * leg, zorder=2, **_TIE))
         if section.hollow:
             empty = {**_OUTLINE, "facecolor": "white"}
-            drawn.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
+            drawn.add_patch(Polygon(on_paper * section.void(), zorder=2.4, **empty))
         for x, y, diameter in section.place_bars(section.single_bars):
-            drawn.add_patch(Circle((1e3 * x, 1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
+            drawn.add_patch(
+                Circle((on_paper * x, on_paper * y), 0.5 * on_paper * diameter, zorder=3, **_BAR)
+            )
         reach_x, reach_y = 0.54 * w, 0.54 * h
         drawn.set(xlim=(-reach_x, reach_x), ylim=(-reach_y, reach_y))
         drawn.set_aspect("equal")
         drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
         drawn.set_yticks([-0.5 * h, 0.0, 0.5 * h])
-        drawn.set(xlabel="Width (mm)", ylabel="$y$ (mm)")
+        drawn.set(xlabel=f"Width ({unit})", ylabel=f"$y$ ({unit})")
         if h > _NARROW * w:  # Numbers of a wall's width would lie on each other.
             drawn.set_xticks([])
-            drawn.set(xlabel=f"Width {w:g} mm")
+            drawn.set(xlabel=f"Width {w:g} {unit}")
         for spine in drawn.spines.values():
             spine.set_visible(False)
     return drawn
@@ -250,25 +259,27 @@ def shear_diagram(
     """
     with axes_or_new(ax, (3.5, 2.8)) as drawn:
         strain = 1e3 * np.concatenate([[0.0], diagram.strain])
-        force = np.concatenate([[0.0], diagram.force]) / 1e3
+        force = factor("N") * np.concatenate([[0.0], diagram.force])
         drawn.plot(strain, force, **line_of(MODEL_LINE | {"label": "Section"}, line))
         marks = {"yielding": diagram.knee, "ultimate": diagram.end}
         if spring is not None:
             marks = {"yielding": spring.knee, "ultimate": spring.end}
             points = [(0.0, 0.0)] + [(p.strain, p.force) for p in (spring.knee, spring.end)]
             x, y = np.array(points).T
-            drawn.plot(1e3 * x, y / 1e3, **TEST_LINE, label="Spring")
+            drawn.plot(1e3 * x, factor("N") * y, **TEST_LINE, label="Spring")
             # A strength far above the diagram would only flatten it.
-            if spring.strength < 1.3e3 * force.max():
-                drawn.axhline(spring.strength / 1e3, color="0.75", linewidth=0.6, label="$V_n$")
+            if factor("N") * spring.strength < 1.3 * force.max():
+                drawn.axhline(
+                    factor("N") * spring.strength, color="0.75", linewidth=0.6, label="$V_n$"
+                )
         for name, label in (("yielding", "Knee"), ("ultimate", "End")):
             point = marks[name]
             if point is not None:
-                at = 1e3 * point.strain, point.force / 1e3
+                at = 1e3 * point.strain, factor("N") * point.force
                 drawn.plot(*at, label=label, **_MARK, **EVENT_MARKS[name])
         drawn.set_xlim(0.0, 1.08 * strain.max())
         drawn.set_ylim(bottom=0.0)
-        drawn.set(xlabel="Shear strain (mm/m)", ylabel="Shear force (kN)")
+        drawn.set(xlabel="Shear strain (mm/m)", ylabel=labelled("Shear force", "N"))
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="lower right", handletextpad=0.5)
     return drawn
@@ -316,26 +327,31 @@ def interaction(
         one_side = diagram.upside_down is None
         if marks is not None:
             moments = np.abs(marks[:, 1]) if one_side else marks[:, 1]
-            drawn.plot(moments / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")
+            drawn.plot(
+                factor("N m") * moments, factor("N") * marks[:, 0], **TEST_POINTS, label="demand"
+            )
         drawn.axhline(0.0, **ZERO_LINE)
         if one_side:
             drawn.set_xlim(left=0.0, auto=True)
         else:
             drawn.axvline(0.0, **ZERO_LINE)
-        drawn.set(xlabel="Moment (kN m)", ylabel="Axial load (kN), compression positive")
+        drawn.set(
+            xlabel=labelled("Moment", "N m"),
+            ylabel=f"{labelled('Axial load', 'N')}, compression positive",
+        )
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="upper right", fontsize=7.5)
     return drawn
 
 
 def _outline(diagram: InteractionDiagram, axial: str, moment: str) -> tuple[Array, Array]:
-    """Return moments and axial loads [kN m, kN], those of unlike faces around both sides."""
+    """Return moments and axial loads on paper, those of unlike faces around both sides."""
     m, n = getattr(diagram, moment), getattr(diagram, axial)
     other = diagram.upside_down
     if other is not None:
         m = np.concatenate((m, -getattr(other, moment)[::-1], m[:1]))
         n = np.concatenate((n, getattr(other, axial)[::-1], n[:1]))
-    return m / 1e3, n / 1e3
+    return factor("N m") * m, factor("N") * n
 
 
 def section_state(
@@ -385,12 +401,12 @@ def section_state(
     with style_of(axes[0]):
         buckles = buckling_strain(section, column)
         _draw_layers(section, (strains.position, strains.part, value), buckles, axes[0])
-        axes[1].plot(100 * value[concrete], 1e3 * strains.position[concrete], **MODEL_LINE)
+        axes[1].plot(100 * value[concrete], factor("m") * strains.position[concrete], **MODEL_LINE)
         mark: Line = {"ls": "none", "marker": "o", "ms": 3.5, "mfc": "white", "mec": "black"}
-        axes[1].plot(100 * value[~concrete], 1e3 * strains.position[~concrete], **mark)
+        axes[1].plot(100 * value[~concrete], factor("m") * strains.position[~concrete], **mark)
         axes[1].axvline(0.0, **ZERO_LINE)
         axes[1].set_ylim(axes[0].get_ylim())
-        axes[1].set(xlabel="Strain (%), elongation positive", ylabel="$y$ (mm)")
+        axes[1].set(xlabel="Strain (%), elongation positive", ylabel=labelled("$y$", "m"))
         axes[1].tick_params(right=True, top=True)
         drift = 100 * result.displacement[row] / column.height
         axes[0].set_title(f"drift {drift:.2f} %", fontsize=8)
@@ -408,19 +424,22 @@ def _draw_layers(
     core = section.confinement
     cover = section.concrete_law["eps0"], section.concrete.eps_spall
     marks = {"cover": cover, "core": (core.eps_cc, core.eps_cu) if core else cover}
-    half = 0.5e3 * section.depth
-    clip = Polygon(1e3 * section.outline(), facecolor="none", edgecolor="black", lw=0.8, zorder=3)
+    on_paper, unit = paper("m")
+    half = 0.5 * on_paper * section.depth
+    clip = Polygon(
+        on_paper * section.outline(), facecolor="none", edgecolor="black", lw=0.8, zorder=3
+    )
     ax.add_patch(clip)
-    wide = 1e3 * np.ptp(section.outline()[:, 0])
-    inner = 1e3 * (section.width - 2 * float(section.side_cover or 0.0))
+    wide = on_paper * np.ptp(section.outline()[:, 0])
+    inner = on_paper * (section.width - 2 * float(section.side_cover or 0.0))
     for part, span in (("cover", wide), ("core", inner)):
         chosen = np.flatnonzero(parts == part)
         chosen = chosen[np.argsort(places[chosen])]
-        ys = 1e3 * places[chosen]
+        ys = on_paper * places[chosen]
         if ys.size == 0:
             continue
         between = 0.5 * (ys[1:] + ys[:-1])
-        end = half if part == "cover" else half - 1e3 * section.cover
+        end = half if part == "cover" else half - on_paper * section.cover
         edges = np.concatenate(([-end], between, [end]))
         for low, high, strain in zip(edges[:-1], edges[1:], values[chosen], strict=True):
             state = _of_concrete(-strain, *marks[part])
@@ -439,11 +458,11 @@ def _draw_layers(
         state = "elastic" if abs(strain) < yields else "yields"
         if strain > buckles:
             state = "beyond buckling strain"
-        at, radius = (1e3 * x, 1e3 * y), 0.5e3 * diameter
+        at, radius = (on_paper * x, on_paper * y), 0.5 * on_paper * diameter
         ax.add_patch(Circle(at, radius, zorder=4, ec="black", lw=0.6, **_BARS[state]))
     ax.set(xlim=(-0.54 * wide, 0.54 * wide), ylim=(-1.08 * half, 1.08 * half))
     ax.set_aspect("equal")
-    ax.set(xlabel="Width (mm)", ylabel="$y$ (mm)")
+    ax.set(xlabel=f"Width ({unit})", ylabel=f"$y$ ({unit})")
     fibres = [Patch(ec="black", lw=0.5, label=name, **fill) for name, fill in _FIBRES.items()]
     circles = [
         Line2D([], [], marker="o", ls="", mec="black", mfc=fill["facecolor"], label=name)

@@ -19,6 +19,7 @@ from rbsdem import _arguments
 from rbsdem._files import write_figure
 from rbsdem._types import Axes, NDArray
 from rbsdem.errors import InputError
+from rbsdem.output.units import factor
 
 #: Return type of functions with several axes: an array of them, as ``pyplot.subplots`` does.
 AxesArray = NDArray[np.object_]
@@ -180,12 +181,12 @@ def keep_letters(axis: Any, model: Any) -> None:
 
 
 def drift_axis(ax: Axes, height: float) -> None:
-    """Put drift ratios above displacements in mm, in the letters of the axis below."""
+    """Put drift ratios above displacements, in the letters of the axis below."""
     from matplotlib.ticker import MaxNLocator  # noqa: PLC0415
 
     if any(child.get_gid() == "drift" for child in ax.child_axes):
         return
-    share = 0.1 / height  # per cent of a height in m, of a displacement in mm
+    share = 100.0 / (height * factor("m"))  # per cent of the height
 
     both = (lambda displacement: displacement * share), (lambda drift: drift / share)
     top = ax.secondary_xaxis("top", functions=both, gid="drift")

@@ -13,18 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 from rbsdem._files import Tabular, atomic_write
 from rbsdem._types import DataFrame
+from rbsdem.output.units import factor as factor_of
+from rbsdem.output.units import known, paper
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-
-#: Units of SI: factor to the unit on paper, and that unit.
-_THOUSANDS = {"N": "kN", "J": "kJ", "N m": "kN m", "Nm": "kN m"}
-PAPER = {unit: (1e-3, on_paper) for unit, on_paper in _THOUSANDS.items()}
-PAPER |= {"m": (1e3, "mm"), "1/m": (1e3, "mrad/m"), "drift": (1e2, "%")}
-PAPER |= {"N/m": (1e-6, "kN/mm"), "Pa": (1e-6, "MPa"), "Nm2": (1e-6, "MN m2")}
 
 #: Letters of a line where standard output is no terminal.
 _WIDE = 200
@@ -52,7 +48,7 @@ def table(
     styles: Sequence[str | None] | None = None,
     caption: str | None = None,
 ) -> Table:
-    """Return a table for the terminal: mm, kN, kJ and per cent, three digits.
+    """Return a table for the terminal: mm, kN, kJ (or those of `plot.units`) and per cent.
 
     The unit of a number is at the end of its column's name (``peak_force_N``), or in the column
     "unit" of its row. What has no name of this kind is printed as it is.
@@ -132,10 +128,10 @@ def cells(record: Tabular | DataFrame) -> list[tuple[str, bool, list[str]]]:
         heading, factor = _heading(str(name))
         values = list(frame[name])
         if name == "unit":
-            values = [PAPER.get(unit, (1.0, unit))[1] for unit in values]
+            values = [paper(unit)[1] for unit in values]
         numbers = is_numeric_dtype(frame[name]) and frame[name].dtype != bool
         if numbers:
-            factors = [PAPER.get(u, (1.0, u))[0] for u in units] if units else [factor] * len(frame)
+            factors = [factor_of(u) for u in units] if units else [factor] * len(frame)
             values = [_figure(value, by) for value, by in zip(values, factors, strict=True)]
         found.append((heading, numbers, [_word(value) for value in values]))
     return found
@@ -179,11 +175,11 @@ def plain(text: str, **style: Any) -> Text:
 def _heading(name: str) -> tuple[str, float]:
     """Return the heading of a column and the factor of its numbers."""
     stem, _, unit = name.rpartition("_")
-    if not (stem and unit in PAPER):
+    if not (stem and known(unit)):
         stem, unit = name, "drift" if "drift" in name.split("_") else ""
     words = stem.replace("_", " ")
     words = words[:1].upper() + words[1:]
-    factor, on_paper = PAPER.get(unit, (1.0, unit))
+    factor, on_paper = paper(unit)
     return (f"{words}\n{on_paper}" if on_paper else words), factor
 
 

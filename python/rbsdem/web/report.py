@@ -34,7 +34,9 @@ from rbsdem.model.shape import Section
 from rbsdem.output import frames, many, section
 from rbsdem.output.loops import history
 from rbsdem.output.style import style
-from rbsdem.output.tables import PAPER, cells
+from rbsdem.output.tables import cells
+from rbsdem.output.units import paper
+from rbsdem.output.units import units as paper_units
 from rbsdem.run.analysis import modes
 from rbsdem.run.case import Case, case_of
 from rbsdem.run.column_result import Result
@@ -197,6 +199,7 @@ def report(
     author: str = "",
     project: str = "",
     date: str | None = None,
+    units: tuple[str, str] = ("mm", "kN"),
     **asked: Any,
 ) -> Path:
     """Write a report as one html file that opens offline and prints on A4.
@@ -215,6 +218,9 @@ def report(
         that rbsdem did not write there is refused, not written over.
     title, author, project, date : str, optional
         For its head; the date is that of today.
+    units : tuple of str, optional
+        Of lengths and forces in figures and tables, as for `rbsdem.plot.units`. Tables as csv, and
+        the page inside the report of a column, have their own.
     **asked
         Of a section: the `axial_load` [N], and the `length` of its column for the values of codes
         [m]. Of an IDA: the `limits` of its fragility curves, as for `IDA.fragilities`. Of an
@@ -226,7 +232,7 @@ def report(
         The file.
     """
     return write_record(
-        record, path, title=title, author=author, project=project, date=date, **asked
+        record, path, title=title, author=author, project=project, date=date, units=units, **asked
     )[0]
 
 
@@ -238,20 +244,27 @@ def write_record(
     author: str | None = "",
     project: str | None = "",
     date: str | None = None,
+    units: tuple[str, str] = ("mm", "kN"),
     **asked: Any,
 ) -> list[Path]:
     """Write a report as `report` does; return all of its files."""
     for name, text in (("title", title), ("author", author), ("project", project), ("date", date)):
         if not isinstance(text, str | None):
             raise InputError(f"report: {name} = {_arguments.shown(text)} must be a text")
-    sheets = list(sheets_of(record, **asked))
+    if not (isinstance(units, (tuple, list)) and len(units) == 2):
+        raise InputError(
+            f"report: units = {_arguments.shown(units)} must be a length and a force, as "
+            '("in", "kip")'
+        )
     case = case_of(record) if isinstance(record, Result | FrameResult) else None
     target = Path(path)
     title = title or (case.title if case else "") or target.stem
     data = _column_data(record, case, title) if case and isinstance(record, Result) else None
-    front = _head(title, author or "", project or "", date) + _html(sheets[0])
-    # Sheets whose table alone is beside the report have nothing to show.
-    behind = "".join(_html(sheet) for sheet in sheets[1:] if sheet.figures or not sheet.beside)
+    with paper_units(*units):
+        sheets = list(sheets_of(record, **asked))
+        front = _head(title, author or "", project or "", date) + _html(sheets[0])
+        # Sheets whose table alone is beside the report have nothing to show.
+        behind = "".join(_html(sheet) for sheet in sheets[1:] if sheet.figures or not sheet.beside)
     page = one_file(title, data, REPORT if data else (), (front, behind))
     tables = {f"{sheet.name}.csv": sheet.table for sheet in sheets if sheet.table is not None}
     names = [*tables, *(["case.nml"] if case else [])]
@@ -376,9 +389,9 @@ def inputs(statement: _core.Statement) -> DataFrame:
             # The sizes of a shape are lengths.
             unit = key.get("unit", "" if key or group != "section" else "m")
             unit = _OF_RULES[group == "flexure"].get(unit, unit)
-            factor, unit = (1.0, unit) if unit == "N/m" else PAPER.get(unit, (1.0, unit))
+            scale, unit = (1.0, unit) if unit == "N/m" else paper(unit)
             values = ", ".join(
-                each if isinstance(each, str) else f"{factor * each:.6g}"
+                each if isinstance(each, str) else f"{scale * each:.6g}"
                 for each in (value if isinstance(value, list) else [value])
             )
             if key.get("kind") == "logical":
@@ -436,6 +449,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
         "largest_axial_N": [member.axial.max() for member in members],
         "least_axial_N": [member.axial.min() for member in members],
         "largest_moment_Nm": [np.abs(member.moment).max() for member in members],
+        "largest_shear_N": [np.abs(member.shear).max() for member in members],
         "ductility": [np.fmax.reduce([np.nan, *member.ductility]) for member in members],
     }
     yield Sheet("Members", table=data_frame(rows), beside=len(members) > _MOST_MEMBERS)
@@ -522,10 +536,11 @@ def _of_section(
     yield Sheet("Moment-curvature points", table=found.to_pandas(), beside=True)
     strengths = {code: interaction(drawing, code) for code in get_args(Code)}
     for code, strength in strengths.items():
-        moment, design = (strength.moment_at(axial_load, design=one) / 1e3 for one in (False, True))
+        (arm, of_moment), (scale, of_force) = paper("N m"), paper("N")
+        moment, design = (arm * strength.moment_at(axial_load, design=one) for one in (False, True))
         words = (
-            f"Moment with N {axial_load / 1e3:.4g} kN: nominal {moment:.4g} kN m, "
-            f"design {design:.4g} kN m."
+            f"Moment with N {scale * axial_load:.4g} {of_force}: nominal {moment:.4g} "
+            f"{of_moment}, design {design:.4g} {of_moment}."
         )
         drawn = (partial(section.interaction, strength),)
         yield Sheet(f"Interaction {code}", words, drawn, strength.to_pandas(), beside=True)
@@ -539,10 +554,7 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
     table = found.to_pandas()
     states = {"status": list(found.counts), "runs": list(found.counts.values())}
     yield Sheet("Runs", str(found), table=data_frame(states))
-    noted = table[["warnings", "error"]].melt(var_name="kind", value_name="text")
-    noted = noted[noted["text"] != ""].value_counts().rename("runs").reset_index()
-    if len(noted):
-        yield Sheet("Warnings and errors", table=noted.head(20))
+    yield from _warnings(table)
     names = list(found.measures)
     measured = table.assign(**table[names].abs()).groupby("column", observed=True)[names]
     shares = measured.quantile([0.0, 0.16, 0.5, 0.84, 1.0]).stack().unstack(1)
@@ -550,6 +562,14 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
     words = "Their sizes over motions and scales, in SI; without runs that failed."
     yield Sheet("Measures", words, table=shares.rename_axis(["column", "measure"]).reset_index())
     yield Sheet("All runs", table=table, beside=True)
+
+
+def _warnings(runs: DataFrame) -> Iterator[Sheet]:
+    """Yield what runs have told, and how many of them."""
+    told = runs[["warnings", "error"]].melt(var_name="kind", value_name="text")
+    told = told[told["text"] != ""].value_counts().rename("runs").reset_index()
+    if len(told):
+        yield Sheet("Warnings and errors", table=told.head(20))
 
 
 @sheets_of.register
@@ -568,20 +588,28 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
         "step_s": [one.dt for one in motions.values()],
         "peak_m/s2": [one.pga for one in motions.values()],
     }
+    if len(found.runs.columns) == 1:
+        records["collapse_m/s2"] = np.ravel(found.collapse_intensity)
     yield Sheet("Records", table=data_frame(records))
     yield Sheet("Curves", str(found), (partial(many.ida, found),))
+    level, fractiles = found.fractiles()
+    names = (f"fractile_{share}_drift" for share in (16, 50, 84))
+    rows = {"intensity_m/s2": level} | dict(zip(names, fractiles, strict=True))
+    yield Sheet("Fractiles", table=data_frame(rows), beside=True)
     try:
         curves = found.fragilities(limits or {"collapse": ("collapse", None)})
     except InputError as error:
         yield Sheet("Fragility", str(error))
         curves = {}
-    rows = [
+    fitted = [
         {"limit_state": name, "theta_m/s2": curve.theta, "beta": curve.beta}
         for name, curve in curves.items()
     ]
     if curves:
-        yield Sheet("Fragility", _FITTED, (partial(many.fragilities, curves),), data_frame(rows))
-    yield Sheet("Runs", table=found.to_pandas(), beside=True)
+        yield Sheet("Fragility", _FITTED, (partial(many.fragilities, curves),), data_frame(fitted))
+    table = found.to_pandas()
+    yield from _warnings(table)
+    yield Sheet("Runs", table=table, beside=True)
     scope = f"{SCOPE_NOTE} " if isinstance(structure, Frame) else ""
     yield Sheet("Assumed", f"{scope}{_LEFT_OUT}")
 
@@ -635,13 +663,14 @@ def _described(frame: Frame) -> str:
         ", ".join(f"{one:g}" for one in (several[:1] if len(set(several)) == 1 else several))
         for several in (storeys, bays)
     ]
-    loads = ", ".join(f"{load / 1e3:.4g}" for load in np.atleast_1d(np.asarray(frame.beam_load)))
+    scale, of_force = paper("N")
+    loads = ", ".join(f"{scale * load:.4g}" for load in np.atleast_1d(np.asarray(frame.beam_load)))
     words = [
         f"{len(storeys)} storeys of {sizes[0]} m and {len(bays)} bays of {sizes[1]} m"
         if storeys
         else f"{len(parts.nodes)} nodes and {len(parts.members)} members",
         f"mass {parts.mass / 1e3:.4g} t",
-        f"load of the beams {loads} kN/m",
+        f"load of the beams {loads} {of_force}/m",
         f"{'with' if frame.kinematics == 'pdelta' else 'without'} second-order work of the loads",
     ]
     if parts.mass > 0:
@@ -675,8 +704,8 @@ def _summary(summary: Mapping[str, Any]) -> DataFrame:
     rows = []
     for name, value in summary.items():
         unit = _unit(name)
-        factor, unit = PAPER.get(unit, (1.0, unit))
-        text = f"{factor * value:.4g}" if isinstance(value, int | float) else str(value)
+        scale, unit = paper(unit)
+        text = f"{scale * value:.4g}" if isinstance(value, int | float) else str(value)
         if text:
             rows.append((name.replace("_", " "), text, unit))
     return data_frame(rows, ["figure", "value", "in"])
