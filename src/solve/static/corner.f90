@@ -28,16 +28,21 @@ module rbs_solve_static_corner
    !> Share by which rates differ that are not equal, and share of the rate before that is none.
    real(wp), parameter :: same_rate = 1.0e-9_wp, no_rate = 1.0e-11_wp
 
+   !> Springs that come to their gaps within this share of them turn back together, as if their gaps were
+   !> smaller by it: where a whole storey unloads, layers of concrete turn in a few steps.
+   real(wp), parameter :: together = 0.1_wp
+
 contains
 
    !> Find the lines that lead on in a direction, and the rates on them.
    !>
    !> The way on which no spring turns back is the one of greatest force rate. If there is none, springs
-   !> without room are put on the next line, all at once as long as this leaves fewer and fewer without room,
-   !> else the first one first: while the structure is stable this ends (Murty's least-index rule; with
-   !> blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596), and there is no other way. A
-   !> structure that softens may have several ways: the fundamental one continues the rates before the corner,
-   !> see `follow_through`.
+   !> without room are put on the next line, all at once as long as this leaves fewer and fewer without room
+   !> (blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596). While the structure is stable there
+   !> is no other way, and the first one first ends at it (Murty's least-index rule), whatever the order of
+   !> springs. A structure that softens may have several ways: the fundamental one continues the rates before
+   !> the corner, see `follow_through`; where none is found, those go first that were changed least, so that
+   !> no number of a spring decides.
    subroutine turn_corner(path, direction, target, error)
       class(static_path), intent(inout) :: path
       integer, intent(in) :: direction
@@ -179,13 +184,18 @@ contains
          end do
       end subroutine update_layer_branches
 
-      !> Put the springs without room on the lines that follow, all or the first of them.
+      !> Put the springs without room on the lines that follow: all, the first, or those changed least.
       subroutine change_lines(all_of_them)
          logical, intent(in) :: all_of_them
-         integer :: j
+         logical :: is_unique
+         integer :: most, j
 
-         do j = 1, merge(springs_blocked, min(springs_blocked, 1), all_of_them)
+         is_unique = path%by_force .or. path%is_stable
+         most = huge(1)
+         if (.not. (all_of_them .or. is_unique)) most = minval(path%changed(blocked(:springs_blocked)))
+         do j = 1, merge(springs_blocked, min(springs_blocked, 1), all_of_them .or. .not. is_unique)
             associate (i => blocked(j))
+               if (path%changed(i) > most) cycle
                path%changed(i) = path%changed(i) + 1
                call leave(path%springs, i, merge(1, -1, path%rate(i) > 0.0_wp))
             end associate
@@ -207,6 +217,18 @@ contains
       !> The mark of its springs is the corner
       class(static_path), intent(inout) :: path
       !> Not where the path leads back to where it came from
+      logical, intent(out) :: found
+
+      call follow_gaps(path, together, found)
+      if (found) return
+      call path%springs%restore()
+      call follow_gaps(path, same_rate, found)
+   end subroutine follow_through
+
+   !> The same, with the share of their gaps within which springs turn back at once.
+   subroutine follow_gaps(path, at_once, found)
+      class(static_path), intent(inout) :: path
+      real(wp), intent(in) :: at_once
       logical, intent(out) :: found
       !> Virtual motions of the springs, and gaps; stiffnesses of their lines ahead and of those on which they
       !> go back
@@ -328,9 +350,14 @@ contains
          v = v + least*path%rate(:m)
          do i = 1, m
             if (.not. clearance(i) < huge(1.0_wp)) cycle
-            if ((clearance(i) - least)*abs(path%rate(i)) > same_rate*gap(i)) cycle
+            if ((clearance(i) - least)*abs(path%rate(i)) > &
+                merge(at_once, same_rate, next(i) == back)*gap(i)) cycle
             call add(i, merge(1, -1, path%rate(i) > 0.0_wp))
-            v(i) = at(i)
+            if (next(i) == back) then
+               gap(i) = abs(v(i))
+            else
+               v(i) = at(i)
+            end if
             call change(i, next(i))
          end do
       end subroutine change_first
@@ -353,7 +380,7 @@ contains
          call path%springs%set_stiffness(i, k)
       end subroutine change
 
-   end subroutine follow_through
+   end subroutine follow_gaps
 
    !> Put a spring on the line that follows in a direction. A line without length, as layers have that unload
    !> at once after they were loaded again, and one whose end is met at once are left too.
