@@ -45,6 +45,8 @@ def case_for_python(words: list[str]) -> str:
         text = file.read().lower()
     asked = any(name in text for name in _OF_PYTHON[3:])
     drawn = "&frame" in text and any(name in text for name in (*_OF_PYTHON, *_OF_FRAMES))
+    # A column of a drawing without the layers of its joints
+    drawn |= "&drawing" in text and "&layers" not in text
     return path if asked or drawn else ""
 
 

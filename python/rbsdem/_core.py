@@ -329,7 +329,7 @@ def typed(group: str, given: Mapping[str, Any]) -> dict[str, Any]:
     for key in keys()["groups"][group]:
         name = key["name"]
         if name in found and key.get("values", 1) > 1:
-            found[name] = several(found[name])
+            found[name] = list(map(types.get(key["kind"], float), several(found[name])))
         elif name in found and key["kind"] in types:
             found[name] = types[key["kind"]](found[name])
     return found
@@ -537,6 +537,12 @@ def read_case(path: str | os.PathLike[str]) -> tuple[Statement, Array, Array, ND
     text, numbers, rows, *_ = evaluate("read_case", os.fsdecode(path))
     acting = rows[1:, 0].astype(np.int32)
     return Statement(text, numbers.tolist()), rows[0, 1:].copy(), rows[1:, 1:].T, acting
+
+
+def read_groups(path: str | os.PathLike[str]) -> Statement:
+    """Return the groups of a case file, in SI, with its loadings as they are given."""
+    text, numbers, *_ = evaluate("read_groups", os.fsdecode(_arguments.file(path)))
+    return Statement(text, numbers.tolist())
 
 
 @cache

@@ -11,9 +11,9 @@ from contextvars import ContextVar
 from typing import Any
 
 #: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
-#: place of the value in a file, if it came from one.
+#: place of the value in a file and the name of its drawing, if there are any.
 _FIELD = re.compile(
-    r"(?:.* line \d+: )?(?:([\w ]+?)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
+    r"(?:(?:.* )?line \d+: )?(?:drawing '[^']*': )?(?:([\w ]+?)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
     r"(?: = |: value \d| is missing)"
 )
 
@@ -43,6 +43,12 @@ class InputError(RbsdemError, ValueError):
         super().__init__(message)
         field = field.replace(": ", ".")
         self.faults = tuple((field or _field(line), line) for line in str(message).splitlines())
+
+    def of(self, part: str) -> InputError:
+        """Return the same error with the name of what it is about before each line."""
+        made = InputError("\n".join(f"{part}: {line}" for _, line in self.faults))
+        made.faults = tuple((field, f"{part}: {line}") for field, line in self.faults)
+        return made
 
     @property
     def field(self) -> str:

@@ -5,7 +5,7 @@ module rbs_bindings_evaluate
    use rbs_base_text, only: list_of, text_buffer
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_ensembles, only: plan_ensemble, run_ensemble
-   use rbs_bindings_files, only: case_from_file, case_to_text, test_from_file
+   use rbs_bindings_files, only: case_from_file, case_to_text, groups_of_file, test_from_file
    use rbs_bindings_runs, only: run_analysis
    use rbs_bindings_sections, only: evaluate_section
    use rbs_bindings_statements, only: case_from_statements, structure_from_statements, spring_from_statements
@@ -73,6 +73,8 @@ contains
          call case_to_text(request, answer)
       case ('read_case')
          call case_from_file(request%statement, answer)
+      case ('read_groups')
+         call groups_of_file(request%statement, answer)
       case ('read_history')
          call test_from_file(request%statement, answer)
       case ('protocol')

@@ -16,7 +16,7 @@ module rbs_bindings_files
    implicit none
    private
 
-   public :: case_from_file, case_to_text, test_from_file
+   public :: case_from_file, case_to_text, groups_of_file, test_from_file
 
    integer, parameter :: drives = size(drive_names)
 
@@ -37,8 +37,8 @@ contains
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
       if (allocated(answer%error)) return
-      ! A frame that is drawn is made, and checked, by Python.
-      if (.not. case%is_drawn_frame()) call make_structure(case, structure, before, answer%error)
+      ! What is drawn is made, and checked, by Python.
+      if (.not. case%is_drawn()) call make_structure(case, structure, before, answer%error)
       if (allocated(answer%error)) return
       m = size(history%time)
       allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)
@@ -61,6 +61,22 @@ contains
       answer%text = statements%buffer%text(:statements%buffer%length)
       answer%value = statements%numbers%value(:statements%numbers%count)
    end subroutine case_from_file
+
+   !> The groups of a case in SI with its loadings as they are given, not as histories.
+   subroutine groups_of_file(path, answer)
+      character(len=*), intent(in) :: path
+      type(answer_type), intent(inout) :: answer
+      type(case_record) :: case
+      type(case_history) :: history
+      type(case_text) :: statements
+
+      call load_case(path, case, history, answer%error, unloaded=.true.)
+      if (allocated(answer%error)) return
+      statements%is_statement = .true.
+      call write_case(case, statements)
+      answer%text = statements%buffer%text(:statements%buffer%length)
+      answer%value = statements%numbers%value(:statements%numbers%count)
+   end subroutine groups_of_file
 
    !> Whether a signal acts, and its values at common times; at its own points they are exactly its values.
    subroutine sample(signal, time, row)

@@ -7,6 +7,7 @@ module rbs_case_case_record
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
    use rbs_case_judgement_record, only: judgement_groups, judgement_record
+   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    use rbs_structure_frame_frame_parts, only: frame_parts
@@ -56,7 +57,7 @@ module rbs_case_case_record
       procedure :: validate
       procedure :: check_static
       procedure :: height
-      procedure :: is_drawn_frame
+      procedure :: is_drawn
    end type case_record
 
 contains
@@ -201,11 +202,12 @@ contains
       if (allocated(self%frame)) then
          call validate_frame()
       else
+         self%column%drawn = self%is_drawn()
          call self%column%validate(messages)
       end if
       if (allocated(self%drawing)) then
          do i = 1, size(self%drawing)
-            call self%drawing(i)%validate(allocated(self%frame), messages)
+            call self%drawing(i)%validate(allocated(self%frame), self%is_drawn(), messages)
          end do
          if (size(self%drawing) > 1 .and. .not. allocated(self%frame)) then
             call messages%add('drawing: a column has one; remove the others')
@@ -246,7 +248,7 @@ contains
             end do
          end if
          call self%parts%find(with_kinds, messages)
-         if (self%is_drawn_frame()) deallocate (self%parts)
+         if (self%is_drawn()) deallocate (self%parts)
          call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
             call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the "// &
@@ -311,18 +313,31 @@ contains
       end if
    end function height
 
-   !> Whether it is a frame whose members Python makes of drawings, or whose loads it makes.
-   pure logical function is_drawn_frame(self)
+   !> Whether Python makes its springs of drawings: those of a column but for those beneath its footing, those
+   !> of the members of a frame; or the loads of a frame.
+   pure logical function is_drawn(self)
       class(case_record), intent(in) :: self
 
-      is_drawn_frame = .false.
-      if (.not. allocated(self%frame)) return
+      if (.not. allocated(self%frame)) then
+         is_drawn = allocated(self%drawing) .and. only_beneath(self%column%shear) &
+                    .and. only_beneath(self%column%flexure)
+         return
+      end if
       associate (frame => self%frame)
-         is_drawn_frame = allocated(self%drawing) .or. size(frame%infill_of) > 0 &
-                          .or. size(frame%node_load) > 0 .or. frame%self_weight &
-                          .or. frame%mass /= 'of_floors' .or. any(abs(frame%floor%live_load) > 0.0_wp)
+         is_drawn = allocated(self%drawing) .or. size(frame%infill_of) > 0 &
+                    .or. size(frame%node_load) > 0 .or. frame%self_weight &
+                    .or. frame%mass /= 'of_floors' .or. any(abs(frame%floor%live_load) > 0.0_wp)
       end associate
-   end function is_drawn_frame
+
+   contains
+
+      pure logical function only_beneath(springs)
+         type(spring_record), intent(in), allocatable :: springs(:)
+
+         only_beneath = .not. allocated(springs)
+         if (self%column%footing .and. .not. only_beneath) only_beneath = size(springs) == 1
+      end function only_beneath
+   end function is_drawn
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
    subroutine check_static(self, messages)

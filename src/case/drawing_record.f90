@@ -274,9 +274,34 @@ contains
    end subroutine visit_parameter
 
    !> Add a message for every value that is refused.
-   subroutine validate(self, of_frame, messages)
+   subroutine validate(self, of_frame, drawn, messages)
       class(drawing_record), intent(inout) :: self
-      logical, intent(in) :: of_frame
+      !> Whether springs are still to be made of it
+      logical, intent(in) :: of_frame, drawn
+      type(message_list), intent(inout) :: messages
+      type(message_list) :: own
+      character(len=:), allocatable :: rest
+      integer :: line
+
+      call check_values(self, of_frame, drawn, own)
+      if (own%count == 0) return
+      if (.not. of_frame .or. self%name == '') then
+         call messages%join(own)
+         return
+      end if
+      ! Of several drawings that which is meant
+      rest = own%text
+      do
+         line = index(rest//new_line('a'), new_line('a'))
+         call messages%add("drawing '"//trim(self%name)//"': "//rest(:line - 1))
+         if (line > len(rest)) exit
+         rest = rest(line + 1:)
+      end do
+   end subroutine validate
+
+   subroutine check_values(self, of_frame, drawn, messages)
+      class(drawing_record), intent(inout) :: self
+      logical, intent(in) :: of_frame, drawn
       type(message_list), intent(inout) :: messages
       integer :: i
 
@@ -288,6 +313,11 @@ contains
          if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.8'")
          if (of_frame) then
             if (self%name == '') call messages%add('drawing: name is missing; members of the frame name it')
+         else if (drawn) then
+            if (is_given(self%height) .or. is_given(self%axial_load) .or. is_given(self%n)) then
+               call messages%add('drawing: height, axial_load and n are those that springs were made for, '// &
+                                 'and there are none; remove them, and give them to the column')
+            end if
          else
             call require('height', is_given(self%height), ' in m')
             call require('axial_load', is_given(self%axial_load), ' in N')
@@ -334,7 +364,7 @@ contains
 
          if (.not. given) call messages%add('drawing: '//name//' is missing; give it a value'//unit)
       end subroutine require
-   end subroutine validate
+   end subroutine check_values
 
    !> The values of a layout, and its steels.
    subroutine check_layout(section, name, layout, messages)

@@ -279,7 +279,7 @@ contains
 
       if (.not. self%of_section) then
          if (.not. allocated(self%case%frame)) then
-            call place_springs(self%entries, self%case%column, messages)
+            call place_springs(self%entries, self%case%column, allocated(self%case%drawing), messages)
             return
          end if
          if (self%seen(findloc(group_names == 'column', .true., dim=1))) then

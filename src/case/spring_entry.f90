@@ -170,10 +170,12 @@ contains
       if (are_of) are_of = .not. any(abs(layers%position - spring%position) > 0.0_wp)
    end function are_of
 
-   !> Give the springs to the joints of a column.
-   subroutine place_springs(list, column, messages)
+   !> Give the springs to the joints of a column; one that is drawn may have those beneath its footing alone.
+   subroutine place_springs(list, column, drawn, messages)
       type(entry_list), intent(in) :: list
       type(column_record), intent(inout) :: column
+      !> Whether its section is there
+      logical, intent(in) :: drawn
       type(message_list), intent(inout) :: messages
       !> Numbers of the lowest and the uppermost joint, and the same for messages
       integer :: first, last, known, i
@@ -243,6 +245,12 @@ contains
          if (all(of_joint == 0) .and. first > 0) then
             springs = [list%entry(rest)%spring]
             return
+         end if
+         if (drawn .and. first == 0 .and. rest == 0) then
+            if (count(of_joint > 0) == 1 .and. of_joint(0) > 0) then
+               springs = [list%entry(of_joint(0))%spring]
+               return
+            end if
          end if
          i = findloc(of_joint, 0, dim=1) + first - 1
          if (i == 0 .and. first == 0) then

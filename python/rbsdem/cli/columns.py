@@ -43,8 +43,8 @@ from rbsdem.run.case import Case, read_case
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver
 from rbsdem.section.criteria import WATCHED
 from rbsdem.section.frame import Frame
-from rbsdem.web.answers import tests_of
-from rbsdem.web.exports import drawing_in, opened
+from rbsdem.web.answers import Answers, tests_of
+from rbsdem.web.exports import opened
 from rbsdem.web.report import write_record, write_report
 from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
@@ -599,8 +599,9 @@ def explore(case: Path | None, no_browser: bool, port: int, tests: Path | None) 
     \b
     Exit codes: 0 ended, 2 the input is wrong.
     """
-    start = DEFAULT if case is None else start_of(case)
-    server = ExploreServer(port, start, None if tests is None else tests_of(tests))
+    server = ExploreServer(port, DEFAULT, None if tests is None else tests_of(tests))
+    if case is not None:
+        server.start = start_of(case, server.answers)
     print(server.address, flush=True)
     if not no_browser:
         # Some browsers come back only when they are closed.
@@ -643,15 +644,23 @@ def report(
         units: Any = tuple(paper.split(","))
         _tell_files(write_record(found.run(), file, title=title, units=units, **head))
         return 0
-    start = start_of(case)
-    near = None if tests is None else tests_of(tests)
+    answers = Answers(None if tests is None else tests_of(tests))
+    start = start_of(case, answers)
     title = title or start["title"] or case.stem
-    _tell_files([write_report(file, start, title, near, **head)])
+    about: Any = head
+    _tell_files([write_report(file, start, title, answers=answers, **about)])
     return 0
 
 
-def start_of(path: Path) -> Mapping[str, Any]:
+def start_of(path: Path, server: Answers) -> Mapping[str, Any]:
     """Return the state of a case file; its histories are put into it.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    server : Answers
+        Keeps the record that it has.
 
     Raises
     ------
@@ -659,10 +668,9 @@ def start_of(path: Path) -> Mapping[str, Any]:
         As `rbsdem.read_case`.
     """
     case = read_case(path)
-    written = path.read_text(encoding="utf-8", errors="replace")
-    found = opened(written) if drawing_in(written) is not None else {"faults": []}
-    if "faults" in found:
-        found = opened(case.to_namelist())
+    found = opened(path.read_text(encoding="utf-8", errors="replace"), server.keep_record)
+    if "faults" in found:  # it names files
+        found = opened(case.to_namelist(), server.keep_record)
     if "faults" in found:
         raise InputError("\n".join(fault["text"] for fault in found["faults"]))
-    return {**found["state"], "note": found.get("note", ""), "title": case.title}
+    return {**found["state"], "title": case.title}

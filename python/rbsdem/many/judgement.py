@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -114,7 +114,32 @@ def _spectrum(given: Mapping[str, Any]) -> DesignSpectrum:
     return (DesignSpectrum.en_1998 if code == "en_1998" else DesignSpectrum.asce_41)(**values)
 
 
-def judge(case: Case, *, jobs: int | None = None, progress: bool = False) -> Judgement:
+def response(case: Case, **settings: Any) -> FrameResult:
+    """Return the push-over to the largest displacement of a static case, or its response in time.
+
+    Parameters
+    ----------
+    case : Case
+        A case of a frame.
+    **settings
+        Settings of the response in time beside those of the case.
+    """
+    path = case.displacement
+    result: Any
+    if case.method == "static" and path is not None:
+        result = pushover(case.column, displacement=float(path[np.abs(path).argmax()]))
+    else:
+        result = case.run(**settings)
+    return cast(FrameResult, result)
+
+
+def judge(
+    case: Case,
+    *,
+    result: FrameResult | None = None,
+    jobs: int | None = None,
+    progress: bool = False,
+) -> Judgement:
     """Run a case and do what its groups `&target`, `&records` and `&assess` ask for.
 
     A static case is a push-over to the largest displacement of its loading. Members are assessed
@@ -124,6 +149,8 @@ def judge(case: Case, *, jobs: int | None = None, progress: bool = False) -> Jud
     ----------
     case : Case
         As of `rbsdem.read_case`.
+    result : FrameResult, optional
+        Its response, if it is known.
     jobs, progress
         As for `rbsdem.ensemble`, for the records.
 
@@ -135,12 +162,7 @@ def judge(case: Case, *, jobs: int | None = None, progress: bool = False) -> Jud
     spectrum, levels = checked(case)
     if not isinstance(case.column, Frame):
         raise InputError("judge: the case has no frame; give one")
-    path = case.displacement
-    result: Any
-    if case.method == "static" and path is not None:
-        result = pushover(case.column, displacement=float(path[np.abs(path).argmax()]))
-    else:
-        result = case.run()
+    result = result or response(case)
     point = check = None
     if spectrum is not None:
         method = case.target["method"]

@@ -8,6 +8,7 @@ import os
 import tempfile
 import zipfile
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, cast
@@ -22,6 +23,7 @@ from rbsdem.run.column_result import Result
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.groups import (
     drawing_of,
+    drawn_column,
     frame_of,
     layered_column,
     springs_of_joints,
@@ -240,7 +242,13 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "damping" in found:
         column["damping"] = Damping(**_core.typed("damping", found["damping"]))
     column = {"mass": None} | column
-    made = layered_column(drawing_of(groups), column) if "drawing" in groups else Column(**column)
+    made: Column
+    if "drawing" not in groups:
+        made = Column(**column)
+    elif "flexure" not in column:
+        made = drawn_column(groups, column)
+    else:
+        made = layered_column(drawing_of(groups), column)
     return _case_of(made, found, settings, time, values, acting, more)
 
 
@@ -268,12 +276,36 @@ def _texts(given: dict[str, Any]) -> dict[str, Any]:
 
 def case_of_text(text: str) -> Case:
     """Return the case of a text, which its reader takes from a file; see `read_case`."""
+    with _as_file(text) as path:
+        return read_case(path)
+
+
+def groups_of_text(text: str) -> list[tuple[str, dict[str, Any]]]:
+    """Return the groups of the text of a case in SI, with its loadings as they are given.
+
+    Raises
+    ------
+    InputError
+        As `read_case`.
+    """
+    with _as_file(text) as path:
+        return [
+            (name, _core.typed(name, values))
+            for name, values in _core.groups(_core.read_groups(path))
+        ]
+
+
+@contextlib.contextmanager
+def _as_file(text: str) -> Iterator[Path]:
+    """Give the path of a file with a text, of which errors do not tell."""
     with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
         path = Path(folder) / "case.nml"
         path.write_bytes(text.encode())
         try:
-            return read_case(path)
+            yield path
         except InputError as error:
+            if str(path) not in str(error):
+                raise
             raise InputError(str(error).replace(str(path), "case")) from None
 
 

@@ -14,6 +14,7 @@ from rbsdem.model.materials import Bars, Concrete, Lap, Layout, Spiral, Steel, T
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
+from rbsdem.section.columns import column
 from rbsdem.section.frame import Frame
 from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
@@ -35,6 +36,8 @@ SHAPES: dict[str, type[Section]] = {
 #: Keys of a frame that is drawn, and of its floors.
 _DRAWN = ("ends", "panel_hoops", "live_share", "self_weight", "mass", "wall_spans")
 _OF_FLOORS = ("dead_load", "live_load", "mass")
+#: Keys of a column that is drawn which are arguments of `rbsdem.section.column`.
+_OF_DRAWN = ("mass", "n", "axial_height", "top", "footing")
 #: Keys of the location of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")
 #: Classes of the groups that refer to steels.
@@ -64,16 +67,16 @@ def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
     AccuracyWarning
         Where they are not those that the model draws.
     """
-    column = LayeredColumn(**given, drawing=drawing)
-    if column.drawing != drawing:
+    made = LayeredColumn(**given, drawing=drawing)
+    if made.drawing != drawing:
         warn(
             f"the springs of the case were drawn for axial_load = {drawing.axial_load:g} N, and "
-            f"its column has {column.axial_load:g} N; it is solved with its own springs, and "
+            f"its column has {made.axial_load:g} N; it is solved with its own springs, and "
             "nothing is known of bars and concrete. To draw it again, make the column of its "
             "section",
         )
         return Column(**given)
-    other = column.replaced
+    other = made.replaced
     if other:
         warn(
             f"the case has {' and '.join(other)} other than layered {drawing.parameters.label} "
@@ -81,7 +84,7 @@ def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
             "undergo is known only for a hinge that is as drawn. To draw the springs anew, make "
             "the column of case.column.drawing.section",
         )
-    return column
+    return made
 
 
 def drawing_of(groups: Groups) -> LayeredModel:
@@ -100,7 +103,43 @@ def drawing_of(groups: Groups) -> LayeredModel:
     drawing = _one(groups, "drawing")
     changes = {one["name"]: one["value"] for one in groups.get("parameter", [])}
     made = _parameters(drawing.pop("version"), changes)
-    return LayeredModel(section=_section(groups), parameters=made, **drawing)
+    return LayeredModel(section=section_of(groups), parameters=made, **drawing)
+
+
+def drawn_column(groups: Groups, given: Mapping[str, Any]) -> Column:
+    """Return the column of a case that has its section, and no springs but those of a footing.
+
+    It has second-order effects, as `rbsdem.section.column` makes it.
+
+    Parameters
+    ----------
+    groups : mapping
+        The groups of the case.
+    given : mapping
+        The arguments of `rbsdem.Column` that the case gives.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the section cannot carry the axial load.
+    """
+    for name in ("lengths", "model"):
+        if name in given:
+            raise InputError(f"column: {name} is of columns with springs; remove it, or give them")
+    about = _one(groups, "drawing")
+    about.pop("name", None)
+    changes = {one["name"]: one["value"] for one in groups.get("parameter", [])}
+    about["model_parameters"] = _parameters(about.pop("version"), changes)
+    rest = {name: value for name, value in given.items() if value is not None}
+    about |= {name: rest.pop(name) for name in _OF_DRAWN if name in rest}
+    if "n" in about and about.get("top") == "fixed":
+        # Bodies of each half, which share the one in the middle
+        about["n"] = (about["n"] + 1) // 2
+    if rest.get("kinematics") == "small":
+        del rest["kinematics"]
+    height, load = rest.pop("height", None), rest.pop("axial_load", 0.0)
+    made: Column = column(section_of(groups), height, axial_load=load, **about)
+    return replace(made, **rest)
 
 
 def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
@@ -113,7 +152,8 @@ def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
     return replace(made, version=version)
 
 
-def _section(groups: Groups) -> Section:
+def section_of(groups: Groups) -> Section:
+    """Return the section of the groups of one drawing."""
     steels: dict[int | None, Steel] = {}
     for one in groups.get("steel", []):
         values = _core.typed("steel", one)
@@ -224,7 +264,7 @@ def springs_of_joints(groups: Groups, last: int) -> dict[str, Any]:
     """
     springs = _layer_springs(groups)
     layers = {_joints(given): _layers(given, springs) for given in groups.get("layers", [])}
-    column: dict[str, Any] = {}
+    found: dict[str, Any] = {}
     for name in SPRING_GROUPS:
         places: dict[int | None, Spring] = {}
         for given in groups.get(name, []):
@@ -232,12 +272,12 @@ def springs_of_joints(groups: Groups, last: int) -> dict[str, Any]:
             spring = _spring(given, layers[joints] if given["rule"] == "layered" else ())
             places |= dict.fromkeys(joints or (None,), spring)
         if 0 in places:
-            column[f"{name}_0"] = places.pop(0)
+            found[f"{name}_0"] = places.pop(0)
         if None in places:
-            column[name] = places[None]
+            found[name] = places[None]
         elif places:
-            column[name] = [places[joint] for joint in range(1, last + 1)]
-    return column
+            found[name] = [places[joint] for joint in range(1, last + 1)]
+    return found
 
 
 def _joints(given: dict[str, Any]) -> tuple[int, ...]:
@@ -300,8 +340,12 @@ def _drawn_section(groups: Groups) -> Section:
             f"drawing {about['name']!r}: of members of a frame it has name and version alone, and "
             "the parameters of the version"
         )
-    _parameters(about["version"], {})
-    return _section(groups)
+    try:
+        _parameters(about["version"], {})
+        return section_of(groups)
+    except InputError as error:
+        # Of several drawings that which is meant
+        raise error.of(f"drawing {about['name']!r}") from None
 
 
 def _infill(given: dict[str, Any]) -> Infill:

@@ -1,4 +1,4 @@
-"""Answers to the page about a state: loops with limit states, diagrams, code values, bands, tests.
+"""Answers to the page about its cases: loops with limit states, diagrams, codes, bands, tests.
 
 Answers are what JSON holds, in SI, with six digits. The functions are those that everybody calls;
 columns and results that were just made are kept, as several answers stand on them.
@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -34,8 +34,8 @@ from rbsdem.output.section import hoop_lines
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.case import Case
 from rbsdem.run.column_result import Result
-from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram as diagram_of
+from rbsdem.section.frame import Frame
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import InteractionDiagram, interaction
 from rbsdem.web import exports, frames
@@ -44,12 +44,14 @@ from rbsdem.web.state import (
     Drawn,
     Faults,
     RefusedError,
-    column_of,
-    drawn_case,
+    case_of,
+    drawn_of,
+    first,
+    is_frame,
     key_of,
     number,
     numbers,
-    section_of,
+    sections_of,
     shown_rows,
     state_of,
 )
@@ -67,16 +69,16 @@ Pause = Callable[[], None]
 
 @dataclass(frozen=True)
 class Answered:
-    """A column with its result.
+    """A case of the page with its response.
 
     Attributes
     ----------
-    result : Result or None
+    result : Result or FrameResult, or None
         The response; None if the input is wrong.
     drawn : Drawn or None
         The drawn column; None for a case that has no drawing.
     case : Case or None
-        Column and loading.
+        The case as it is read from its groups.
     faults : list
         Messages with their fields.
     notes : list of str
@@ -84,22 +86,19 @@ class Answered:
     stopped : str
         Why the analysis ended early.
     seconds : float
-        Time for column, path and limit states.
-    frame : FrameResult or None
-        The response of a frame.
-    sections : list
-        Sections of the columns and beams of its storeys.
+        Time for structure, path and limit states.
+    sections : dict
+        Sections by the names of their drawings.
     """
 
-    result: Result | None = None
+    result: Any = None
     drawn: Drawn | None = None
     case: Case | None = None
     faults: list[dict[str, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     stopped: str = ""
     seconds: float = 0.0
-    frame: FrameResult | None = None
-    sections: list[Any] = field(default_factory=list)
+    sections: dict[str, Any] = field(default_factory=dict)
 
 
 class Answers:
@@ -121,123 +120,104 @@ class Answers:
 
     # ---- loops ----------------------------------------------------------------------------------
 
-    def solved(self, given: Asked, loading: Asked) -> Answered:
-        """Return a column of the state with its response."""
-        return self._once([given, loading], lambda: self._solve(given, loading))
-
-    def framed(self, state: Asked) -> Answered:
-        """Return the frame of a state with its response."""
-
-        def solve() -> Answered:
-            faults = Faults()
-            with recorded() as told:
-                found = frames.solved(state, self.records, faults)
-            notes = list(dict.fromkeys(str(one.message) for one in told))
-            return Answered(
-                frame=found.result, sections=found.sections, stopped=found.stopped,
-                faults=faults.listed, notes=notes,
-            )  # fmt: skip
-
-        return self._once(state, solve)
-
-    def _once(self, about: object, solve: Callable[[], Answered]) -> Answered:
-        """Return the answer of an input, solved once and kept."""
-        key = key_of(about)
+    def solved(self, case: Any) -> Answered:
+        """Return a case of the state with its response, solved once and kept."""
+        key = key_of(case)
         if key in self._kept:
             self._kept.move_to_end(key)
             return self._kept[key]
         begun = time.perf_counter()
         try:
-            answered = solve()
+            answered = self._solve(case)
         except Exception as error:
             answered = Answered(faults=[{"field": "", "text": defect(error)}])
         answered = replace(answered, seconds=time.perf_counter() - begun)
         # A refused input may be right later: a record may be opened meanwhile.
-        if answered.result is not None or answered.frame is not None:
-            self._kept[key] = answered
+        if answered.result is not None:
+            self.keep(case, answered)
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
         return answered
 
-    def keep(self, given: Asked, loading: Asked, known: Answered) -> None:
-        """Keep a column with its response that was computed elsewhere."""
-        self._kept[key_of([given, loading])] = known
+    def keep(self, case: Any, known: Answered) -> None:
+        """Keep a case with its response that was computed elsewhere."""
+        self._kept[key_of(case)] = known
 
-    def _solve(self, given: Asked, loading: Asked) -> Answered:
-        faults, drawn, case = Faults(), None, None
-        notes: list[str] = []
-        if "case" in given:
-            with recorded() as told:
-                try:
-                    case = exports.own_case(given["case"])
-                except RbsdemError as error:
-                    faults.add("case", str(error))
-            notes = [str(one.message) for one in told]
-            if case is not None and isinstance(case.column, LayeredColumn) and case.column.drawing:
-                drawing = case.column.drawing
-                drawn = Drawn(case.column, drawing.section, drawing.height, 1.0)
-        else:
-            case, drawn, notes = drawn_case(given, loading, self.records, faults)
+    def _solve(self, given: Any) -> Answered:
+        faults = Faults([] if isinstance(given, str) else given)
+        # A section may be drawn although the case is refused.
+        sections = {} if isinstance(given, str) else sections_of(given)
+        case, notes = case_of(given, self.records, faults)
+        about: dict[str, Any] = {"sections": sections, "faults": faults.listed}
         if case is None:
-            return Answered(faults=faults.listed, notes=notes)
-        stopped = ""
-        with recorded() as told:
-            try:
-                # The strains of a layered hinge follow from its openings.
-                result = cast(Result, case.run(case.plain_column("the page"), openings=True))
-            except RbsdemError as error:
-                if not isinstance(error, SolveError) or error.result is None:
-                    faults.add("case" if "case" in given else "loading.kind", str(error))
-                    return Answered(faults=faults.listed, notes=notes)
-                result, stopped = error.result, str(error)
-        notes = [*notes, *dict.fromkeys(str(one.message) for one in told)]
-        return Answered(result, drawn, case, notes=notes, stopped=stopped)
+            return Answered(notes=notes, **about)
+        result: Any = None
+        stopped, drawn = "", None
+        with recorded() as told, faults.kept():
+            if isinstance(case.column, Frame) and not isinstance(given, str):
+                result, stopped = frames.solved(case, faults)
+            else:
+                computed, drawn = drawn_of(case, not isinstance(given, str))
+                try:
+                    # The strains of a layered hinge follow from its openings.
+                    result = computed.run(computed.plain_column("the page"), openings=True)
+                except SolveError as error:
+                    result, stopped = error.result, str(error)
+                    if result is None:
+                        faults.add("", str(error))
+        notes = [*notes, *(str(one.message) for one in told)]
+        about |= {"notes": list(dict.fromkeys(notes)), "stopped": stopped}
+        return Answered(result, drawn if result is not None else None, case, **about)
 
-    def _columns(self, asked: Asked) -> list[tuple[Asked, Answered]]:
+    def _columns(self, asked: Asked) -> list[tuple[Any, Answered]]:
         """Return each column of the state with its response."""
-        state = state_of(asked)
-        return [(given, self.solved(given, state["loading"])) for given in state["columns"]]
+        cases = state_of(asked)
+        if any(map(is_frame, cases)):
+            raise RefusedError(400, "state: this is asked of columns")
+        return [(case, self.solved(case)) for case in cases]
 
     def loops(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the loop of each column, or of a frame, with limit states and its sections."""
-        state, columns = state_of(asked, frames=True), []
-        if "frame" in state:
-            return {"frame": self._frame(state)}
-        for given in state["columns"]:
+        cases = state_of(asked)
+        if is_frame(cases[0]):
+            return {"frame": self._frame(cases[0])}
+        columns = []
+        for case in cases:
             begun = time.perf_counter()
-            found = self.solved(given, state["loading"])
+            found = self.solved(case)
             answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
             if found.drawn is not None:
                 answer["figure"] = _figure(found.drawn.section)
                 answer["model"] = found.drawn.column.model
-            elif "case" not in given:
-                # The section may be drawn although the column is refused.
-                section = section_of(given, Faults())
+            else:
+                section = next(iter(found.sections.values()), None)
                 answer["figure"] = None if section is None else _figure(section)
             if found.result is not None:
                 factor = 1.0 if found.drawn is None else found.drawn.factor
                 answer |= to_json(found.result, factor) | {"stopped": found.stopped}
-                answer["title"] = found.case.title if found.case and "case" in given else ""
+                answer["title"] = found.case.title if found.case else ""
             answer["seconds"] = round(max(found.seconds, time.perf_counter() - begun), 4)
             columns.append(answer)
         return {"columns": columns}
 
-    def _frame(self, state: Asked) -> dict[str, Any]:
+    def _frame(self, case: Any) -> dict[str, Any]:
         begun = time.perf_counter()
-        found = self.framed(state)
+        found = self.solved(case)
         answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
-        answer |= {"stopped": found.stopped, "sections": []}
-        for pair in found.sections:
-            answer["sections"].append([None if one is None else _figure(one) for one in pair])
-        if found.frame is not None:
-            answer |= frames.to_json(found.frame)
+        answer |= {"stopped": found.stopped, "sections": {}}
+        for name, section in found.sections.items():
+            answer["sections"][name] = None if section is None else _figure(section)
+        if found.result is not None:
+            answer |= frames.to_json(found.result)
         return answer | {"seconds": round(max(found.seconds, time.perf_counter() - begun), 4)}
 
     def checks(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the target displacement of a frame, and its members beside their limits."""
-        state = state_of(asked, frames=True)
-        found = self.framed(state) if "frame" in state else Answered()
-        return {} if found.frame is None else frames.checked(found.frame, state)
+        (case, *_) = state_of(asked)
+        found = self.solved(case) if is_frame(case) else Answered()
+        if found.case is None or found.result is None:
+            return {}
+        return frames.checked(found.case, found.result, Faults(case))
 
     # ---- the section ----------------------------------------------------------------------------
 
@@ -284,16 +264,20 @@ class Answers:
 
     def scales(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the peak drift under a motion by its scale, times that of the state."""
-        loading = state_of(asked)["loading"]
         columns: list[dict[str, Any]] = []
-        for given, found in self._columns(asked):
-            if found.drawn is None or found.result is None or not found.result.dynamic:
+        for case, found in self._columns(asked):
+            drawn = found.drawn is not None and not isinstance(case, str)
+            if not drawn or not found.result.dynamic:
                 columns.append({"none": "scales are for a motion of the ground"})
                 continue
-            now = _arguments.number(loading.get("scale", 1.0), "scale")
+            now = _arguments.number(first(case, "loading").get("scale", 1.0), "scale")
             rows = []
             for scale in _SCALES:
-                result = self._solve(given, {**loading, "scale": scale * now}).result
+                scaled = [
+                    [name, {**values, "scale": scale * now} if name == "loading" else values]
+                    for name, values in case
+                ]
+                result = self._solve(scaled).result
                 if result is not None:
                     peak = float(np.max(np.abs(result.drift), initial=0.0))
                     status = result.summary["status"]
@@ -307,8 +291,8 @@ class Answers:
         if self.near is None:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
         columns: list[dict[str, Any]] = []
-        for given in state_of(asked)["columns"]:
-            drawn = None if "case" in given else column_of(given, Faults())[0]
+        for case, found in self._columns(asked):
+            drawn = None if isinstance(case, str) else found.drawn
             if drawn is None or drawn.section.hollow:
                 columns.append({"none": "the folder has no tests of such columns"})
                 continue
@@ -329,30 +313,36 @@ class Answers:
 
     def export(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return a column or a frame as a case file, Python or csv."""
-        state, form = state_of(asked, frames=True), asked.get("form")
-        which = asked.get("column", 0)
+        cases, form, which = state_of(asked), asked.get("form"), asked.get("column", 0)
         if form not in ("namelist", "python", "csv"):
             raise RefusedError(400, "form must be namelist, python or csv")
-        if "frame" in state:
-            response = self.framed(state)
-            if response.frame is None:
-                return {"faults": response.faults}
-            return {"text": exports.of_frame(form, response.frame, state), "name": "frame"}
-        if type(which) is not int or not 0 <= which < len(state["columns"]):
+        if type(which) is not int or not 0 <= which < len(cases):
             raise RefusedError(400, "column must be the number of a column")
-        given, loading = state["columns"][which], state["loading"]
-        found = self.solved(given, loading)
-        if found.result is None or found.case is None:
+        case = cases[which]
+        found = self.solved(case)
+        if found.result is None:
             return {"faults": found.faults}
+        name = "frame" if is_frame(case) else f"column_{'ab'[which]}"
         if form == "csv":
             text = exports.csv_of(found.result)
+        elif form == "namelist":
+            text = exports.namelist(case, self.records)
         else:
-            text = exports.exported(form, found.case, found.drawn, given, loading)
-        return {"text": text, "name": f"column_{'ab'[which]}"}
+            text = exports.python(case, found.drawn, f"{name}.nml")
+        return {"text": text, "name": name}
 
     def open(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the state of the text of a case file."""
-        return exports.opened(asked.get("text"))
+        return exports.opened(asked.get("text"), self.keep_record)
+
+    def keep_record(self, motion: GroundMotion, name: str) -> str:
+        """Keep a record; return the name by which a loading asks for it."""
+        digest = hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode())
+        key = f"{name.replace('#', '')}#{digest.hexdigest()[:12]}"
+        self.records[key] = motion
+        while len(self.records) > _RECORDS:
+            self.records.pop(next(iter(self.records)))
+        return key
 
     def record(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Keep the record of a text; return the name by which a loading asks for it."""
@@ -370,13 +360,9 @@ class Answers:
                 )
         except RbsdemError as error:
             told = re.sub(r"^text\b", lambda _: shown, str(error))
-            return {"faults": [{"field": "loading.record", "text": told}]}
-        digest = hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode())
-        key = digest.hexdigest()[:16]
-        self.records[key] = motion
-        while len(self.records) > _RECORDS:
-            self.records.pop(next(iter(self.records)))
-        return {"id": key, "name": shown, "pga": motion.pga, "length": motion.length}
+            return {"faults": [{"field": "loading.file", "text": told}]}
+        key = self.keep_record(motion, shown)
+        return {"file": key, "pga": motion.pga, "length": motion.length}
 
 
 #: Questions, by the last part of the path.

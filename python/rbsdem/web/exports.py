@@ -1,7 +1,7 @@
 """Texts that leave the page and come back: case files, Python, csv.
 
-A case file has the springs of the column and the whole path, so that the executable computes the
-same loop. Its first lines are comments with the drawing, from which the page comes back.
+A case file has the groups of the page, with the values of a record in place of its name. One that
+comes back is drawn again; a column whose springs are none that are drawn stays a text.
 """
 
 from __future__ import annotations
@@ -12,159 +12,130 @@ import hashlib
 import json
 import re
 import tempfile
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from rbsdem._arguments import Derived
 from rbsdem._package import unwarned
 from rbsdem.errors import InputError
 from rbsdem.model.springs import Spring
-from rbsdem.run.case import Case, case_of, case_of_text
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.run.case import Case, case_of_text, groups_of_text
 from rbsdem.run.column_result import Result
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.solver import COLLAPSE_DRIFT
-from rbsdem.web import frames
-from rbsdem.web.state import Drawn, Faults, RefusedError, drawn_case, state_of
+from rbsdem.section.frame import Frame
+from rbsdem.web.state import (
+    Drawn,
+    Faults,
+    Group,
+    completed,
+    first,
+    is_frame,
+    refuse_files,
+    text_of,
+)
 
-_MARK = "! rbsdem explore: "
 _PROGRAM = 'import rbsdem\n\ncase = rbsdem.read_case("{}")\nresult = case.run()\nprint(result)\n'
-#: Letters of the drawing on a line of its comment.
-_LINE = 90
+#: Groups of springs, which are made again where they are those of the drawing.
+_SPRINGS = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
+#: Keys of a column that is drawn.
+_OF_COLUMN = ("height", "axial_load", "top", "top_mass", "top_inertia", "axial_height")
 
 
-def _namelist(case: Case, drawing: Mapping[str, Any] | None) -> str:
-    """Return a case file, with a drawing in comments in front of it.
+def namelist(case: Any, records: Mapping[str, GroundMotion]) -> str:
+    """Return a case of the page as the text of a case file."""
+    return case if isinstance(case, str) else text_of(completed(case), records, Faults(case))
+
+
+def opened(text: object, keep: Callable[[GroundMotion, str], str]) -> dict[str, Any]:
+    """Return the state of the text of a case file.
 
     Parameters
     ----------
-    case : Case
-        The case.
-    drawing : mapping or None
-        The state of the page that it was made from.
+    text : str
+        The text.
+    keep : callable
+        Keeps a record that is in it, and returns its name.
     """
-    text = case.to_namelist()
-    if drawing is None:
-        return text
-    packed = json.dumps(drawing, separators=(",", ":"))
-    lines = [_MARK + packed[i : i + _LINE] for i in range(0, len(packed), _LINE)]
-    head = "! What was drawn; its springs follow. rbsdem explore opens it again.\n"
-    return head + "\n".join(lines) + "\n" + text
-
-
-def drawing_in(text: str) -> dict[str, Any] | None:
-    """Return the drawing in the comments of a case file, or None if there is none to be read."""
-    packed = "".join(
-        line[len(_MARK) :].rstrip("\r") for line in text.split("\n") if line.startswith(_MARK)
-    )
     try:
-        found = json.loads(packed) if packed else None
-    except ValueError:
-        return None
-    return found if isinstance(found, dict) else None
-
-
-def own_case(text: object) -> Case:
-    """Read the text of a case file that names no other file.
-
-    Raises
-    ------
-    InputError
-        As `read_case`; also if the text names a file, which a page must not reach.
-    """
-    if not isinstance(text, str):
-        raise InputError("case: give the text of a case file")
-    _refuse_files(text)
-    return case_of_text(text)
-
-
-def opened(text: object) -> dict[str, Any]:
-    """Return the state of the text of a case file, from its drawing or as the case that it is."""
-    try:
+        if not isinstance(text, str):
+            raise InputError("case: give the text of a case file")
+        refuse_files(text)
         with unwarned(Warning):
             # Notes on it stand beside its loop.
-            case = own_case(text)
+            case = case_of_text(text)
+            groups = _drawn_again(groups_of_text(text), case)
     except InputError as error:
-        return {"faults": [{"field": "case", "text": str(error)}]}
-    drawing, note = drawing_in(str(text)), ""
-    if drawing is not None:
-        with suppress(RefusedError):
-            state = state_of({"state": drawing}, frames=True)
-            with unwarned(Warning):
-                drawn = _drawn_again(state)
-            if drawn is not None:
-                drawn = dataclasses.replace(drawn, title=case.title)
-                if drawn.to_namelist() == case.to_namelist():
-                    return {"state": state}
-        note = "the file was changed after it was drawn: it is shown as it is, without its drawing"
-    column = {"name": "A", "case": text}
-    return {"state": {"columns": [column], "loading": {"kind": "own"}}, "note": note}
+        return {"faults": [{"field": "", "text": str(error)}]}
+    if groups is None:
+        return {"state": {"cases": [text]}}
+    for name, values in groups:
+        if name == "loading" and not _keep_record(values, keep):
+            return {"state": {"cases": [text]}}
+    return {"state": {"cases": [[list(one) for one in groups]]}}
 
 
-def _drawn_again(state: Mapping[str, Any]) -> Case | None:
-    """Return the case of a drawing; None if it has faults."""
-    if "frame" not in state:
-        return drawn_case(state["columns"][0], state["loading"], {}, Faults())[0]
-    result = frames.solved(state, {}, Faults()).result
-    return None if result is None else case_of(result)
+def _keep_record(values: dict[str, Any], keep: Callable[[GroundMotion, str], str]) -> bool:
+    """Put the name of a record in place of its values; return whether the page can show it."""
+    values.pop("source", None)
+    if values.get("drive") != "ground_acceleration":
+        return values.get("drive") == "displacement"
+    steps = np.diff(values.pop("time", [0.0, values.get("interval", 0.0)]))
+    if "values" not in values or values.get("unit", "m/s2") != "m/s2":
+        return False
+    if not steps[0] > 0.0 or not np.allclose(steps, steps[0], rtol=1e-6, atol=0.0):
+        return False
+    motion = GroundMotion(np.array(values.pop("values")), float(steps[0]))
+    values.pop("interval", None)
+    values["file"] = keep(motion, "record of the file")
+    return True
 
 
-def _refuse_files(text: str) -> None:
-    """Refuse keys that name files, outside of texts and comments, which end with their line."""
-    for number, line in enumerate(text.splitlines(), 1):
-        bare, quote = [], ""
-        for letter in line:
-            if not quote and letter == "!":
-                break
-            if not quote and letter in "'\"":
-                quote = letter
-            elif letter == quote:
-                quote = ""
-            elif not quote:
-                bare.append(letter)
-        if quote:
-            raise InputError(f"line {number}: a text is not closed; put {quote} at its end")
-        key = re.search(r"\b(file|initial|state)\b", "".join(bare), re.IGNORECASE)
-        if key:
-            raise InputError(
-                f"line {number}: {key[0].lower()} = names a file, which a page does not read; "
-                "start rbsdem explore CASE.nml, which puts histories into the case"
-            )
+def _drawn_again(groups: list[Group], case: Case) -> list[Group] | None:
+    """Return the groups that the page draws; None for a column that is not as it would be drawn."""
+    static = ("analysis", {"method": "static"})
+    groups = [one for one in groups if one != static and one[0] != "units"]
+    if isinstance(case.column, Frame):
+        return groups if first(groups, "frame").get("storeys") else None
+    if not first(groups, "drawing") or sum(name == "loading" for name, _ in groups) != 1:
+        return None
+    made: list[Group] = []
+    for name, values in groups:
+        if name == "column":
+            footing = {key: values[key] for key in values if key.startswith("footing_")}
+            own = {key: values[key] for key in _OF_COLUMN if key in values}
+            made.append((name, {"top": "free"} | own | footing))
+        elif name == "drawing":
+            made.append((name, {"version": values["version"]}))
+        elif name not in _SPRINGS or values.get("joint") in (0, [0]):
+            made.append((name, values))
+    try:
+        again = case_of_text(text_of(made, {}, Faults(made)))
+    except InputError:
+        return None
+    return made if again.column == case.column else None
 
 
-def exported(
-    form: str, case: Case, drawn: Drawn | None, given: Mapping[str, Any], loading: Mapping[str, Any]
-) -> str:
-    """Return a column as a case file ("namelist") or as a program ("python").
+def python(case: Any, drawn: Drawn | None, name: str) -> str:
+    """Return a program that computes the response of a case of the page.
 
     Parameters
     ----------
-    form : str
-        Which.
-    case, drawn
-        The column as a case, and as it was drawn.
-    given, loading : mapping
-        Column and loading of the state that it was made from.
+    case : list or str
+        The case.
+    drawn : Drawn or None
+        Its column as it was drawn.
+    name : str
+        The case file that a program without a drawing reads.
     """
-    if form == "python" and drawn is not None and "case" not in given:
-        return _python(drawn, given["column"], loading)
-    if form == "python":
-        return _PROGRAM.format("case.nml")
-    # A record that was opened is in the case itself, not in its drawing.
-    known = "case" not in given and loading.get("kind") != "record"
-    return _namelist(case, {"columns": [given], "loading": loading} if known else None)
-
-
-def of_frame(form: str, result: FrameResult, state: Mapping[str, Any]) -> str:
-    """Return a frame with its loading in a form, as `exported`, or its rows ("csv")."""
-    if form == "csv":
-        return csv_of(result)
-    if form == "python":
-        return _PROGRAM.format("frame.nml")
-    known = state["loading"].get("kind") != "record"
-    return _namelist(case_of(result), state if known else None)
+    if drawn is None or isinstance(case, str) or is_frame(case):
+        return _PROGRAM.format(name)
+    return _python(drawn, first(completed(case), "column"), first(case, "loading"))
 
 
 def csv_of(result: Result | FrameResult) -> str:
@@ -175,44 +146,48 @@ def csv_of(result: Result | FrameResult) -> str:
         return rows.read_text(encoding="utf-8")
 
 
-def _python(drawn: Drawn, frame: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
+def _python(drawn: Drawn, column: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
     """Return a program that computes the loop of a drawn column."""
-    section, column = drawn.section, drawn.column
+    section, made = drawn.section, drawn.column
     lines = [
         f"section = {type(section).__name__}(",
         *(f"    {name}={_code(value)}," for name, value in _stated(section)),
         ")",
     ]
-    moved = loading["kind"] in ("synthetic", "record")
-    height, more = repr(frame["height"]), ""
+    height, more = repr(column["height"]), ""
     if drawn.factor != 1.0:
         lines.append(
             "# The lower half of a column in double curvature moves by half of what the ends do."
         )
         height += f" / {drawn.factor:g}"
-    if column.top == "fixed":
+    if made.top == "fixed":
         more += ', top="fixed"'
-    if column.footing is not None:
-        lines.append(f"footing = {_code(column.footing)}")
+    if made.footing is not None:
+        lines.append(f"footing = {_code(made.footing)}")
         more += ", footing=footing"
-    load = repr(frame["axial_load"])
+    load = repr(made.axial_load)
     lines.append(f"column = rbsdem.section.column(section, {height}, axial_load={load}{more})")
-    if moved:
-        mass = frame.get("top_mass")
-        mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)
-        record = f"read_motion({loading.get('name')!r})"
-        if loading["kind"] == "synthetic":
-            record = f"synthetic(1, seed={loading.get('seed', 1)!r}, dt=0.01)[0]"
+    if loading["drive"] == "ground_acceleration":
+        file = loading["file"]
+        record = f"read_motion({file.partition('#')[0]!r})"
+        if file.startswith("synthetic "):
+            record = f"synthetic(1, seed={file.split()[1]}, dt=0.01)[0]"
         lines += [
             f"motion = rbsdem.motions.{record}.scaled({loading.get('scale', 1.0)!r})",
-            f"column = dataclasses.replace(column, top_mass={mass})",
+            f"column = dataclasses.replace(column, top_mass={column['top_mass']!r})",
             "result = rbsdem.time_history(",
             "    column, ground_acceleration=motion, openings=True,",
             f"    collapse_drift={COLLAPSE_DRIFT},",
             ")",
         ]
+    elif "values" in loading:
+        share = "" if drawn.factor == 1.0 else f" / {drawn.factor:g}"
+        lines += [
+            f"path = np.array({loading['values']!r}){share}",
+            "result = rbsdem.cyclic(column, displacement=path)",
+        ]
     else:
-        names = ("name", "amplitudes", "cycles", "reference", "largest")
+        names = ("protocol", "amplitudes", "cycles", "reference", "largest")
         values = [(n, loading[n]) for n in names if loading.get(n) is not None]
         asked = [f"{n}={v!r}" if i else repr(v) for i, (n, v) in enumerate(values)]
         lines += [
@@ -223,6 +198,7 @@ def _python(drawn: Drawn, frame: Mapping[str, Any], loading: Mapping[str, Any]) 
     text = "\n".join(lines)
     classes = ", ".join(sorted(set(re.findall(r"(?<!\.)\b([A-Z]\w+)\(", text))))
     head = "import dataclasses\n\n" if "dataclasses." in text else ""
+    head += "import numpy as np\n" if "np." in text else ""
     return f"{head}import rbsdem\nfrom rbsdem import {classes}\n\n{text}"
 
 
@@ -248,8 +224,8 @@ def _stated(record: Any) -> list[tuple[str, Any]]:
 
 #: Modules that pages and reports share, each after those that it imports.
 _SHARED = (
-    "units.js", "chart.js", "fields.js", "drawing.js", "panels.js", "history.js", "answers.js",
-    "machine.js", "columns.js",
+    "units.js", "chart.js", "fields.js", "section.js", "drawing.js", "panels.js", "history.js",
+    "answers.js", "machine.js", "columns.js",
 )  # fmt: skip
 #: Modules of the page, and of a report of columns.
 PAGE, REPORT = (*_SHARED, "frame.js", "main.js"), (*_SHARED, "report.js")

@@ -48,7 +48,7 @@ from rbsdem.section.strength import Code, interaction
 from rbsdem.web.answers import Answered, Answers
 from rbsdem.web.exports import REPORT, one_file, plain
 from rbsdem.web.frames import judged
-from rbsdem.web.state import Drawn, state_of
+from rbsdem.web.state import Drawn, is_frame, state_of, title_of
 
 #: Keys that only number things, or say how finely the program divides.
 _NUMBERS = ("id", "steel", "strips", "spring", "joint")
@@ -107,28 +107,31 @@ def report_data(
     title: str,
     near: Specimens | None = None,
     known: Answered | None = None,
+    answers: Answers | None = None,
 ) -> dict[str, Any]:
     """Return the answers to a state as a report holds them.
 
     Parameters
     ----------
     state : mapping
-        Columns and loading.
+        Its cases, of columns.
     title : str
         Title of the report.
     near : Specimens, optional
         Tests to compare with.
     known : Answered, optional
         Column and result of the state, which then need not be computed.
+    answers : Answers, optional
+        Those that have the tests and the records of the state.
 
     Raises
     ------
     InputError
         With a line for everything that is wrong with a column or the loading.
     """
-    answers, asked = Answers(near), {"state": state}
+    answers, asked = answers or Answers(near), {"state": state}
     if known is not None:
-        answers.keep(state["columns"][0], state["loading"], known)
+        answers.keep(state["cases"][0], known)
 
     def ask(answer: Callable[..., dict[str, Any]], **more: Any) -> Any:
         return answer(asked | more, lambda: None)["columns"]
@@ -140,13 +143,13 @@ def report_data(
     data: dict[str, Any] = {
         "title": title,
         "version": _core.version(),
-        "state": {"columns": state["columns"], "loading": state["loading"]},
+        "state": {"cases": state["cases"]},
         "loops": [{**loop, "seconds": 0} for loop in found],
         "sections": {code: ask(answers.sections, code=code) for code in ("aci318", "ec2")},
         "bands": ask(answers.bands),
         "scales": ask(answers.scales) if any(loop.get("dynamic") for loop in found) else None,
         "own": ask(answers.own),
-        "near": None if near is None else answers.nearest(asked, lambda: None),
+        "near": None if answers.near is None else answers.nearest(asked, lambda: None),
         "exports": {},
     }
     for form in ("namelist", "python"):
@@ -165,6 +168,7 @@ def write_report(
     *,
     author: str = "",
     project: str = "",
+    answers: Answers | None = None,
 ) -> Path:
     """Write a report of a state of the page, whole or not at all.
 
@@ -176,9 +180,11 @@ def write_report(
         As for `report_data`.
     author, project : str, optional
         For its head.
+    answers : Answers, optional
+        Those that have the tests and the records of the state.
     """
-    head = _head(title, author, project, None)
-    return _write(path, one_file(title, report_data(state, title, near), sheets=(head, "")))
+    data = report_data(state, title, near, answers=answers)
+    return _write(path, one_file(title, data, sheets=(_head(title, author, project, None), "")))
 
 
 def _write(path: str | os.PathLike[str], page: str) -> Path:
@@ -278,25 +284,27 @@ def write_record(
 
 def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]:
     """Return the report of a state of the page as the text of one file."""
-    state = state_of(asked, frames=True)
-    if "frame" not in state:
-        title = " and ".join(str(one.get("name", ""))[:80] for one in state["columns"])
+    cases = state_of(asked)
+    if not is_frame(cases[0]):
+        title = " and ".join(map(title_of, cases))
         try:
-            data = report_data(state, f"Column {title}", answers.near)
+            data = report_data({"cases": cases}, f"Column {title}", answers=answers)
         except InputError as error:
             return {"faults": [{"field": "", "text": str(error)}]}
         head = _head(data["title"], "", "", None)
         return {"text": one_file(data["title"], data, sheets=(head, "")), "name": "report"}
-    found = answers.framed(state)
-    if found.frame is None:
+    found = answers.solved(cases[0])
+    if found.case is None or found.result is None:
         return {"faults": found.faults}
     made: list[Sheet] = []
     with suppress(RbsdemError):
-        assessment, point, _ = judged(found.frame, state)
-        made = list(_of_assessment(assessment, point))
-    shown = [one for one in made or sheets_of(found.frame) if one.figures or not one.beside]
-    html = _head("Frame", "", "", None) + "".join(map(_html, shown))
-    page = one_file("Frame", None, (), (html, ""))
+        outcome = judged(found.case, found.result)
+        for assessment in outcome.assessments[:1]:
+            made = list(_of_assessment(assessment, outcome.target))
+    title = title_of(cases[0]) or "Frame"
+    shown = [one for one in made or sheets_of(found.result) if one.figures or not one.beside]
+    html = _head(title, "", "", None) + "".join(map(_html, shown))
+    page = one_file(title, None, (), (html, ""))
     return {"text": page, "name": "report"}
 
 
@@ -318,7 +326,7 @@ def _column_data(result: Result, case: Case, title: str) -> dict[str, Any]:
     Strains of layers, from which most limit states follow, need them.
     """
     text = case.to_namelist()
-    state = {"columns": [{"name": "A", "case": text}], "loading": {"kind": "own"}}
+    state = {"cases": [text]}
     column, drawn = result.column, None
     if isinstance(column, LayeredColumn) and column.drawing is not None:
         drawn = Drawn(column, column.drawing.section, column.drawing.height, 1.0)

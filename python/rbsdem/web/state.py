@@ -1,7 +1,8 @@
-"""The state of the page as sections, columns and loadings; what is wrong goes beside its field.
+"""The state of the page as cases; what is wrong goes beside its field.
 
-A state is what JSON holds: dicts, lists, numbers in SI. Nothing is checked here that the program
-checks itself: the fields of its `InputError` become the fields of the form.
+A case is the list of the groups of a case file, each a name and its values by their keys in SI, or
+the text of a file that the page does not draw. It is written as such a file and read by the reader
+of all cases, so that keys, bounds and messages are those of files.
 """
 
 from __future__ import annotations
@@ -9,10 +10,11 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -21,65 +23,103 @@ from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import Column, Footing
-from rbsdem.model.materials import CONCRETE_DENSITY, Bars, Concrete, Layout, Spiral, Steel, Ties
-from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
-from rbsdem.model.springs import Elastic
+from rbsdem.model.column import Column
+from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion, synthetic
-from rbsdem.run.case import Case
-from rbsdem.run.protocol import protocol
+from rbsdem.run.case import Case, case_of_text
+from rbsdem.run.groups import section_of
 from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.section import columns
-from rbsdem.section.curvature import column_length
+from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.parameters import VERSION
+
+Group: TypeAlias = tuple[str, dict[str, Any]]
+Groups: TypeAlias = Sequence[Group]
+
+_STEELS: list[list[Any]] = [["steel", {"id": 1, "fy": 450e6}], ["steel", {"id": 2, "fy": 400e6}]]
+_DRIFTS = [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06]
 
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
 DEFAULT: dict[str, Any] = {
-    "columns": [
-        {
-            "name": "A",
-            "section": {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.013},
-            "concrete": {"fc": 46.5e6},
-            "bars": {"number": 12, "diameter": 0.016, "fy": 446e6, "fu": 702e6},
-            "ties": {"diameter": 0.007, "spacing": 0.085, "fy": 364e6, "legs": 4},
-            "column": {"height": 1.6, "ends": "cantilever", "axial_load": 744e3},
-        }
-    ],
-    "loading": {
-        "kind": "amplitudes",
-        "amplitudes": [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06],
-        "cycles": 2,
-    },
+    "cases": [
+        [
+            ["case", {"title": "A"}],
+            ["column", {"height": 1.6, "axial_load": 744e3, "top": "free"}],
+            ["drawing", {"version": VERSION}],
+            ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.013}],
+            ["concrete", {"fc": 46.5e6}],
+            ["steel", {"id": 1, "fy": 446e6, "fu": 702e6}],
+            ["steel", {"id": 2, "fy": 364e6}],
+            ["layout", {"number": 12, "diameter": 0.016, "steel": 1}],
+            ["ties", {"diameter": 0.007, "spacing": 0.085, "steel": 2, "legs": 4}],
+            [
+                "loading",
+                {"drive": "displacement", "unit": "drift", "amplitudes": _DRIFTS, "cycles": [2]},
+            ],
+        ]
+    ]
 }
 
-#: How a column is held, and its height over the distance from an end to where its moment is zero.
-ENDS = {"cantilever": 1.0, "double": 2.0}
+#: The building that the page begins with.
+BUILDING: dict[str, Any] = {
+    "cases": [
+        [
+            [
+                "frame",
+                {
+                    "storeys": [3.2] * 3,
+                    "bays": [6.0, 6.0],
+                    "kinematics": "pdelta",
+                    "live_share": 0.3,
+                    "self_weight": True,
+                    "mass": "from_loads",
+                },
+            ],
+            ["floor", {"dead_load": 20e3, "live_load": 8e3}],
+            ["column_of", {"kind": "C1"}],
+            ["beam_of", {"kind": "B1"}],
+            ["damping", {"modal": [0.05]}],
+            ["drawing", {"name": "C1", "version": VERSION}],
+            ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.03}],
+            ["concrete", {"fc": 30e6}],
+            *_STEELS,
+            ["layout", {"number": 8, "diameter": 0.02, "steel": 1}],
+            ["ties", {"diameter": 0.008, "spacing": 0.1, "steel": 2}],
+            ["drawing", {"name": "B1", "version": VERSION}],
+            ["section", {"shape": "rectangle", "width": 0.3, "depth": 0.5, "cover": 0.03}],
+            ["concrete", {"fc": 30e6}],
+            *_STEELS,
+            ["row", {"face": "top", "number": 4, "diameter": 0.016, "steel": 1}],
+            ["row", {"face": "bottom", "number": 3, "diameter": 0.016, "steel": 1}],
+            ["ties", {"diameter": 0.008, "spacing": 0.15, "steel": 2}],
+            ["loading", {"drive": "displacement", "values": [0.288]}],
+            ["target", {"method": "en_1998", "spectrum": "en_1998", "ag": 0.25, "soil": "C"}],
+            ["assess", {"code": "en_1998_3"}],
+        ]
+    ]
+}
 
-#: Columns side by side, cycles of a path and values of a record that a page shows.
-_MOST_COLUMNS, _MOST_CYCLES, MOST_VALUES = 2, 200, 60_000
-_MOST_BARS = 50
-
+#: Columns side by side; cycles of a path; values of a record that a page shows; storeys and bays.
+_MOST_CASES, _MOST_CYCLES, MOST_VALUES, _MOST_CELLS = 2, 200, 60_000, 12
 #: Rows of a response in an answer; a figure shows no more.
 _ROWS = 8000
-
-#: Shapes with the names of their sizes.
-SHAPES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
-    "rectangle": (RectangularSection, ("width", "depth")),
-    "hollow_rectangle": (RectangularSection, ("width", "depth", "wall")),
-    "circle": (CircularSection, ("diameter",)),
-    "hollow_circle": (CircularSection, ("diameter", "wall")),
-}
-
-#: Groups of the form by the objects that errors name; others belong to the part that is made.
-_GROUPS = {"layout": "bars", "spiral": "ties"} | {n: n for n in ("ties", "section", "footing")}
-#: Fields of the form that errors name otherwise.
-_FIELDS = {
-    "section.bar_diameter": "bars.diameter",
-    "section.flange_width": "section.flange",
-    "section.flange_thickness": "section.slab",
-    "loading.protocol": "loading.name",
-}
-#: The ground beneath a column: none but the column's own foot, or a footing on springs.
-_GROUND = ("none", "springs")
+#: Keys that name files, which a page must not reach.
+_FILES = ("file", "initial", "state", "path")
+_WORD = re.compile(r"[a-z]\w{0,31}", re.ASCII)
+_SYNTHETIC = re.compile(r"synthetic ([0-9]{1,9})")
+#: Where a message is from, and the drawing that it is about; the group that it begins with.
+_PLACE = re.compile(
+    r"(?:case(?:\.nml)?:? )?(?:(?:case(?:\.nml)? )?line (\d+): ?)?(?:drawing '([^']*)': )?"
+)
+_OWNER = re.compile(r"(\w+)(?: \w+)*: ")
+_STATED = re.compile(r"(\w+)(?:\(\d+\))? = (-?[\d.]+(?:e[-+]?\d+)?)(?![\w.])")
+#: Groups that a drawing has, each after the group of its name.
+_OF_DRAWING = (
+    *("section", "concrete", "steel", "bars", "row", "layout", "inner_layout", "ties", "spiral"),
+    *("boundary", "curtain", "lap", "parameter"),
+)
+#: Keys of the page that objects of the program call otherwise.
+_OWNERS = {"bars": "row", "footing": "column"}
 
 
 class RefusedError(Exception):
@@ -91,39 +131,100 @@ class RefusedError(Exception):
 
 
 class Faults:
-    """The messages of one column or loading, as "field" and "text".
+    """The messages on one case.
+
+    Parameters
+    ----------
+    groups : sequence of (str, dict)
+        The groups of the case.
 
     Attributes
     ----------
     listed : list of dict
-        The messages; a field is a field of the form, as "bars.number".
+        The messages: "field" as "3.width", the number of the group and the key, or ""; "text"; "of"
+        is the drawing that it is about.
+    lines : list of int
+        The lines at which the groups begin in the text that is read.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, groups: Groups = ()) -> None:
         self.listed: list[dict[str, str]] = []
+        self.groups = groups
+        self.lines: list[int] = []
 
-    def add(self, field: str, text: str) -> None:
-        """Add a message."""
-        self.listed.append({"field": field, "text": text})
+    def add(self, field: str, text: str, drawing: str = "") -> None:
+        """Add a message, once."""
+        fault = {"field": field, "text": text, "of": drawing}
+        if fault not in self.listed:
+            self.listed.append(fault)
 
     @contextmanager
-    def of(self, group: str, otherwise: str) -> Iterator[None]:
-        """Keep the errors of a part of the drawing, each line beside the field that it names.
-
-        Parameters
-        ----------
-        group : str
-            Group of the form that the part belongs to.
-        otherwise : str
-            Its field for messages that name none.
-        """
+    def kept(self) -> Iterator[None]:
+        """Keep the errors of the program, each line beside the field that it names."""
         try:
             yield
         except InputError as error:
             for name, line in error.faults:
-                owner, _, value = name.rpartition(".")
-                field = f"{_GROUPS.get(owner, group)}.{value or otherwise}"
-                self.add(_FIELDS.get(field, field), line)
+                place = _PLACE.match(line)
+                number, drawing = place.groups() if place else (None, None)
+                text = line[place.end() :] if place else line
+                self.add(self._field(name, text, number, drawing), text, drawing or "")
+
+    def _field(self, name: str, text: str, line: str | None, drawing: str | None) -> str:
+        """Return the group and the key that a message is about."""
+        owner, _, key = name.rpartition(".")
+        if not owner and (begins := _OWNER.match(text)):
+            owner = begins[1]
+        if line is not None and self.lines:
+            found = [max(bisect_right(self.lines, int(line)) - 1, 0)]
+        else:
+            block = _block(self.groups, drawing)
+            # Of "flexure spring of joint 0" the group
+            owner = _OWNERS.get(owner, owner.partition(" ")[0])
+            found = [i for i in block if self.groups[i][0] == owner]
+            found = found or [i for i in block if key and key in self.groups[i][1]]
+        if row := re.match(r"section: (top|bottom|side): ", text):
+            block = _block(self.groups, drawing)
+            found = [i for i in block if self.groups[i][1].get("face") == row[1]]
+            key = "number"
+        stated = _STATED.search(text)
+        for i in found:
+            value = self.groups[i][1].get(key)
+            if (value is None and "is missing" in text) or (
+                stated is not None and stated[1] == key and _is(value, float(stated[2]))
+            ):
+                return f"{i}.{key}"
+        # Else the key that it names, or the first word of it that is one.
+        words = [*([stated[1]] if stated else []), key, *re.findall(r"\w+", text)]
+        for i in found:
+            for word in words:
+                if word in self.groups[i][1]:
+                    return f"{i}.{word}"
+        return f"{found[0]}.{key}" if found and key else ""
+
+
+def _is(value: object, number: float) -> bool:
+    """Return whether a value, or one of a list, is a number to six digits."""
+    several = value if isinstance(value, list) else [value]
+    return any(
+        isinstance(one, int | float) and math.isclose(one, number, rel_tol=1e-5, abs_tol=0.0)
+        for one in several
+    )
+
+
+def _block(groups: Groups, drawing: str | None) -> list[int]:
+    """Return the numbers of the groups of a drawing, of all groups without one."""
+    if drawing is None:
+        return list(range(len(groups)))
+    return next((block for name, block in drawings(groups) if name == drawing), [])
+
+
+def drawings(groups: Groups) -> Iterator[tuple[str, list[int]]]:
+    """Yield the name of each drawing and the numbers of its groups."""
+    starts = [i for i, (name, _) in enumerate(groups) if name == "drawing"]
+    for first, last in zip(starts, [*starts[1:], len(groups)], strict=True):
+        own = [i for i in range(first + 1, last) if groups[i][0] in _OF_DRAWING]
+        yield str(groups[first][1].get("name", "")), [first, *own]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -154,259 +255,266 @@ def key_of(value: object) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"))
 
 
-def state_of(asked: Mapping[str, Any], frames: bool = False) -> dict[str, Any]:
-    """Return the state of a request: columns or a frame, and a loading.
-
-    Their values are checked later.
+def state_of(asked: Mapping[str, Any]) -> list[Any]:
+    """Return the cases of a request; their values are checked later.
 
     Raises
     ------
     RefusedError
-        If the request has none.
+        If they are none.
     """
     state = asked.get("state")
-    if not isinstance(state, dict):
-        raise RefusedError(400, "state must be an object")
-    columns, loading = state.get("columns"), state.get("loading")
-    if frames and "frame" in state:
-        if not isinstance(state["frame"], dict) or not isinstance(loading, dict):
-            raise RefusedError(400, "state: frame and loading must be objects")
-        return {"frame": state["frame"], "loading": loading}
-    if not isinstance(columns, list) or not 1 <= len(columns) <= _MOST_COLUMNS:
-        raise RefusedError(400, "state: columns must be a list of one or two")
-    if not all(isinstance(column, dict) for column in columns) or not isinstance(loading, dict):
-        raise RefusedError(400, "state: each column and the loading must be objects")
-    return {"columns": columns, "loading": loading}
-
-
-def drawn_case(
-    given: Mapping[str, Any],
-    loading: Mapping[str, Any],
-    records: Mapping[str, GroundMotion],
-    faults: Faults,
-) -> tuple[Case | None, Drawn | None, list[str]]:
-    """Return a drawn column under its loading as a case, and the notes of the program.
-
-    Parameters
-    ----------
-    given, loading : mapping
-        A column and the loading of the state.
-    records : mapping
-        The records that were opened, by their digests.
-    faults : Faults
-        What is wrong is added here; then there is no case.
-    """
-    load = loading_of(loading, records, faults)
-    drawn, notes = column_of(given, faults, whole=isinstance(load, GroundMotion))
-    if drawn is not None and isinstance(load, GroundMotion):
-        drawn = _in_motion(drawn, given, faults)
-    if drawn is None or load is None or faults.listed:
-        return None, None, notes
-    title = str(given.get("name", ""))[:80]
-    # Displacement, force, horizontal and vertical ground acceleration, axial load.
-    if isinstance(load, GroundMotion):
-        loads = (None, None, load.acceleration, None, None)
-        settings = {"collapse_drift": COLLAPSE_DRIFT}
-        case = Case(title, drawn.column, "auto", load.time, *loads, settings)
-    else:
-        path = drawn.column.height * load
-        points = np.arange(float(path.size))
-        case = Case(title, drawn.column, "static", points, path, None, None, None, None, {})
-    return case, drawn, notes
-
-
-def column_of(
-    given: Mapping[str, Any], faults: Faults, whole: bool = False
-) -> tuple[Drawn | None, list[str]]:
-    """Make a column, with the notes of the program.
-
-    Parameters
-    ----------
-    given : mapping
-        A column of the state.
-    faults : Faults
-        What is wrong is added here; then there is no column.
-    whole : bool, optional
-        Whether a column in double curvature is made with both its halves, also without a footing.
-    """
-    section = section_of(given, faults)
-    frame = group(given, "column")
-    ends = "cantilever" if frame["ends"] is None else frame["ends"]
-    if not _arguments.is_one_of(ends, ENDS):
-        faults.add("column.ends", f"ends = {ends!r} is not known; there are {', '.join(ENDS)}")
-        return None, []
-    before = len(faults.listed)
-    footing = _footing_of(group(given, "footing"), faults)
-    with faults.of("column", "axial_load"):
-        height = column_length(frame["height"], "height")
-        load = _arguments.number(frame["axial_load"], "axial_load")
-        if section is None or len(faults.listed) > before:
-            return None, []
-        part = 1.0 if whole or footing else ENDS[ends]
-        with recorded() as told:
-            given_ends: Any = {"top": "fixed" if part < ENDS[ends] else "free", "footing": footing}
-            column = columns.column(section, height / part, axial_load=load, **given_ends)
-        notes = [str(one.message) for one in told if issubclass(one.category, AccuracyWarning)]
-        return Drawn(column, section, height / ENDS[ends], part), notes
-    return None, []
-
-
-def _footing_of(given: Mapping[str, Any], faults: Faults) -> Footing | None:
-    """Make the footing of a column of the state; None if there is none, or if it is wrong."""
-    kind = given["kind"]
-    if kind is None or kind == "none":
-        return None
-    if not _arguments.is_one_of(kind, _GROUND):
-        faults.add("footing.kind", f"kind = {kind!r} is not known; there are {', '.join(_GROUND)}")
-        return None
-    with faults.of("footing", "rotation"):
-        names = ("rotation", "sliding", "height")
-        values = {name: _arguments.number(given[name], name, above=0.0) for name in names}
-        mass = _arguments.number(given["mass"], "mass", above=0.0) if given["mass"] else 0.0
-        # A block of concrete with a square plan.
-        square = mass / (CONCRETE_DENSITY * values["height"])
-        inertia = mass * (square + values["height"] ** 2) / 12.0
-        sliding, rotation = Elastic(values["sliding"]), Elastic(values["rotation"])
-        return Footing(sliding, rotation, None, mass, inertia, values["height"])
-    return None
-
-
-def _in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn | None:
-    """Return the column with the mass that an earthquake moves; by default that of its axial load.
-
-    With mass of their own the halves of a column in double curvature do not move alike, so `drawn`
-    has both.
-    """
-    with faults.of("column", "top_mass"):
-        mass = group(given, "column")["top_mass"]
-        if mass is None:
-            mass = max(drawn.column.axial_load, 0.0) / STANDARD_GRAVITY
-        mass = _arguments.number(mass, "top_mass")
-        footing = drawn.column.footing
-        if footing is not None and not footing.mass:
-            raise InputError("mass: a footing that moves needs one", "footing.mass")
-        return dataclasses.replace(drawn, column=dataclasses.replace(drawn.column, top_mass=mass))
-    return None
-
-
-def section_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
-    """Make the section of a column or beam of the state; None if something is wrong with it."""
-    sizes, bars, ties = (group(given, name) for name in ("section", "bars", "ties"))
-    shape = sizes["shape"]
-    if shape == "beam":
-        return _beam_of(given, faults)
-    if not _arguments.is_one_of(shape, SHAPES):
-        text = f"shape = {shape!r} is not known; there are {', '.join(SHAPES)}"
-        faults.add("section.shape", text)
-        return None
-    kind, names = SHAPES[shape]
-    round_ = "circle" in shape
-    parts: dict[str, Any] = {}
-    before = len(faults.listed)
-    with faults.of("concrete", "fc"):
-        parts["concrete"] = Concrete(group(given, "concrete")["fc"])
-    with faults.of("bars", "number"):
-        face = {} if round_ else {"face": bars["face"]}
-        steel = Steel(bars["fy"], bars["fu"])
-        parts["layout"] = Layout(bars["number"], bars["diameter"], steel, **face)
-    with faults.of("ties", "diameter"):
-        steel = Steel(ties["fy"], ties["fu"])
-        if round_:
-            hoops = bool(ties["hoops"])
-            parts["spiral"] = Spiral(ties["diameter"], ties["spacing"], steel, hoops=hoops)
-        else:
-            legs = {n: ties[n] for n in ("legs", "legs_across") if ties[n] is not None}
-            parts["ties"] = Ties(ties["diameter"], ties["spacing"], steel, **legs)
-    if len(faults.listed) > before:
-        return None
-    with faults.of("section", "cover"):
-        return kind(**{name: sizes[name] for name in (*names, "cover")}, **parts)
-    return None
-
-
-def _beam_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
-    """Make the section of a beam: bars above and below, hoops, and a slab if it has a thickness."""
-    sizes, bars, ties = (group(given, name) for name in ("section", "bars", "ties"))
-    parts: dict[str, Any] = {}
-    before = len(faults.listed)
-    with faults.of("concrete", "fc"):
-        parts["concrete"] = Concrete(group(given, "concrete")["fc"])
-    with faults.of("bars", "fy"):
-        parts["steel"] = Steel(bars["fy"], bars["fu"])
-    with faults.of("ties", "diameter"):
-        legs = {} if ties["legs"] is None else {"legs": ties["legs"]}
-        hoop = Steel(ties["fy"], ties["fu"])
-        parts["ties"] = Ties(ties["diameter"], ties["spacing"], hoop, **legs)
-    with faults.of("section", "cover"):
-        for name, least in (("width", 0.0), ("depth", 0.0), ("cover", -1.0)):
-            parts[name] = _arguments.number(sizes[name], name, above=least, unit="m")
-    for name in ("top", "bottom"):
-        with faults.of(name, "number"):
-            row = group(given, name)
-            number = _arguments.integer(row["number"], "number", least=1, most=_MOST_BARS)
-            size = _arguments.number(row["diameter"], "diameter", above=0.0, unit="m")
-            parts[name] = Bars(number, size)
-    if len(faults.listed) > before:
-        return None
-    with faults.of("section", "cover"):
-        if sizes["slab"] is None:
-            return RectangularSection(**parts)
-        flange = {"flange_width": sizes["flange"], "flange_thickness": sizes["slab"]}
-        return TeeSection(**parts, **flange)
-    return None
-
-
-def loading_of(
-    given: Mapping[str, Any], records: Mapping[str, GroundMotion], faults: Faults
-) -> Array | GroundMotion | None:
-    """Make the loading of the state: drifts of a path, or a motion of the ground."""
-    kind = given.get("kind")
-    with faults.of("loading", "kind"):
-        if kind == "amplitudes":
-            steps, cycles = given.get("amplitudes", ()), given.get("cycles")
-            number = _arguments.integer(cycles, "cycles")
-            many = number * len(_arguments.vector(steps, "amplitudes"))
-            if many > _MOST_CYCLES:
-                raise InputError(
-                    f"cycles = {cycles}: {many} cycles are too many here; at most {_MOST_CYCLES}"
-                )
-            return protocol(steps, cycles)
-        if kind == "named":
-            name = _arguments.text(given.get("name"), "name")
-            reference, largest = (_drift(given, drift) for drift in ("reference", "largest"))
-            return protocol(name, reference=reference, largest=largest)
-        if kind == "synthetic":
-            seed = _arguments.integer(given.get("seed", 1), "seed")
-            return synthetic(1, seed, dt=0.01)[0].scaled(_factor(given))
-        if kind == "record":
-            record = records.get(str(given.get("id")))
-            if record is None:
-                file = given.get("name")
-                again = f"{file} is not open here: choose its file again"
-                raise InputError(again if file else "choose a file", "record")
-            return record.scaled(_factor(given))
-        raise InputError(
-            f"kind = {kind!r} is not known; there are amplitudes, named, synthetic, record"
+    cases = state.get("cases") if isinstance(state, dict) else None
+    if not isinstance(cases, list) or not 1 <= len(cases) <= _MOST_CASES:
+        raise RefusedError(400, "state: cases must be a list of one or two")
+    if not all(isinstance(case, str) or _is_groups(case) for case in cases):
+        raise RefusedError(
+            400, "state: a case is a text, or a list of groups: [name, {key: value}]"
         )
-    return None
+    if len(cases) > 1 and any(map(is_frame, cases)):
+        raise RefusedError(400, "state: a frame stands alone")
+    return cases
 
 
-def _drift(given: Mapping[str, Any], name: str) -> float | None:
-    """Return a drift of a protocol of the literature, of a size to look at."""
-    if given.get(name) is None:
-        return None
-    return _arguments.number(given[name], name, least=1e-4, most=1.0, hint=", a drift")
+def _is_groups(case: object) -> bool:
+    return isinstance(case, list) and all(
+        isinstance(one, list)
+        and len(one) == 2
+        and isinstance(one[0], str)
+        and isinstance(one[1], dict)
+        for one in case
+    )
 
 
-def _factor(given: Mapping[str, Any]) -> float:
-    """Return the factor of a motion."""
-    return _arguments.number(given.get("scale", 1.0), "scale", above=0, most=1e3)
+def is_frame(case: Any) -> bool:
+    """Return whether a case is a frame that the page draws."""
+    return not isinstance(case, str) and any(name == "frame" for name, _ in case)
 
 
-def group(given: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return a group of a column; values that are missing are None, which the program refuses."""
-    group = given.get(name)
-    return defaultdict(lambda: None, group if isinstance(group, Mapping) else {})
+def first(groups: Groups, name: str) -> dict[str, Any]:
+    """Return the values of the first group of a name; none if there is no such group."""
+    return next((values for group, values in groups if group == name), {})
+
+
+def title_of(case: Any) -> str:
+    """Return the title of a case, at most 80 letters."""
+    return "" if isinstance(case, str) else str(first(case, "case").get("title", ""))[:80]
+
+
+# ---- a case of the page -------------------------------------------------------------------------
+
+
+def text_of(groups: Groups, records: Mapping[str, GroundMotion], faults: Faults) -> str:
+    """Return the groups as the text of a case file, with the records that they name.
+
+    Parameters
+    ----------
+    groups : sequence of (str, dict)
+        The groups.
+    records : mapping
+        The records that were opened, by their names.
+    faults : Faults
+        What cannot be written is added here, and where each group stands.
+    """
+    lines: list[str] = []
+    for i, (name, values) in enumerate(groups):
+        faults.lines.append(len(lines) + 1)
+        if _WORD.fullmatch(name) is None:
+            faults.add(f"{i}.", f"the group {_arguments.shown(name)} is not known")
+            continue
+        parts = []
+        for key, value in _with_record(name, values, records, faults, i):
+            try:
+                parts.append(_entry(key, value))
+            except InputError as error:
+                faults.add(f"{i}.{key}", f"{name}: {error}")
+        lines += f"&{name} {', '.join(filter(None, parts))} /".split("\n")
+    return "\n".join(lines) + "\n"
+
+
+def _with_record(
+    name: str, values: dict[str, Any], records: Mapping[str, GroundMotion], faults: Faults, i: int
+) -> Iterator[tuple[str, Any]]:
+    """Yield the values of a group, those of a record in place of its name."""
+    for key, value in values.items():
+        if key not in _FILES or value is None:
+            yield key, value
+        elif name != "loading" or key != "file":
+            text = (
+                f"{key} = names a file, which a page does not read; start rbsdem explore CASE.nml"
+            )
+            faults.add(f"{i}.{key}", f"{name}: {text}")
+        elif (motion := _record(str(value), records)) is None:
+            again = f"{str(value).partition('#')[0]} is not open here: choose its file again"
+            faults.add(f"{i}.file", again if value else "choose a file")
+        else:
+            yield "interval", motion.dt
+            yield "values", motion.acceleration.tolist()
+
+
+def _record(name: str, records: Mapping[str, GroundMotion]) -> GroundMotion | None:
+    """Return the motion of a name: one that was opened, or "synthetic 3"."""
+    made = _SYNTHETIC.fullmatch(name)
+    return records.get(name) if made is None else synthetic(1, int(made[1]), dt=0.01)[0]
+
+
+def _entry(key: str, value: Any) -> str:
+    """Return a key and its value as a case file has them; nothing for one that is missing."""
+    if value is None:
+        return ""
+    if _WORD.fullmatch(key) is None:
+        raise InputError(f"{_arguments.shown(key)} is not known")
+    if not isinstance(value, list):
+        return f"{key} = {_written(key, value)}"
+    if not value:
+        raise InputError(f"{key} must not be empty")
+    words = [_written(key, one) for one in value]
+    rows = [", ".join(words[i : i + 16]) for i in range(0, len(words), 16)]
+    return f"{key} = " + ",\n   ".join(rows)
+
+
+def _written(key: str, value: Any) -> str:
+    if isinstance(value, bool):
+        return ".true." if value else ".false."
+    if isinstance(value, int | float):
+        return repr(value).removesuffix(".0")
+    if not isinstance(value, str):
+        raise InputError(f"{key} = {_arguments.shown(value)} must be a number or a text")
+    quoted = "".join(one if one.isprintable() else " " for one in value[:500]).replace("'", "''")
+    return f"'{quoted}'"
+
+
+def completed(groups: Groups) -> list[Group]:
+    """Return the groups with what an earthquake needs: mass at the top, method, collapse."""
+    made = [(str(name), dict(values)) for name, values in groups]
+    loading = first(made, "loading")
+    if loading.get("drive") != "ground_acceleration":
+        return made
+    frame, column = is_frame(made), first(made, "column")
+    load = column.get("axial_load")
+    if column and column.get("top_mass") is None and isinstance(load, int | float):
+        column["top_mass"] = max(load, 0.0) / STANDARD_GRAVITY
+    if not first(made, "analysis"):
+        # A step that follows the record; the largest drift that is of interest.
+        method = {"method": "newmark", "dt": 0.01} if frame else {"method": "auto"}
+        made.append(("analysis", {**method, "collapse_drift": COLLAPSE_DRIFT}))
+    return made
+
+
+def case_of(
+    case: Any, records: Mapping[str, GroundMotion], faults: Faults
+) -> tuple[Case | None, list[str]]:
+    """Return a case of the state, None if something is wrong with it, and the notes of the program.
+
+    Parameters
+    ----------
+    case : list or str
+        Its groups, or a text.
+    records : mapping
+        The records that were opened, by their names.
+    faults : Faults
+        What is wrong is added here.
+    """
+    made, notes = None, list[str]()
+    with recorded() as told, faults.kept():
+        if isinstance(case, str):
+            refuse_files(case)
+            made = case_of_text(case)
+        else:
+            groups = completed(case)
+            text = text_of(groups, records, faults)
+            _check_sizes(groups, faults)
+            if not faults.listed:
+                made = case_of_text(text)
+    kinds = (AccuracyWarning,) if isinstance(made and made.column, Column) else (Warning,)
+    notes = [str(one.message) for one in told if issubclass(one.category, kinds)]
+    return made, list(dict.fromkeys(notes))
+
+
+def _check_sizes(groups: Groups, faults: Faults) -> None:
+    """Refuse what a page is too small for."""
+    for i, (name, values) in enumerate(groups):
+        for key in ("storeys", "bays") if name == "frame" else ():
+            several = values.get(key)
+            if isinstance(several, list) and len(several) > _MOST_CELLS:
+                faults.add(f"{i}.{key}", f"give at most {_MOST_CELLS} of them")
+        steps = values.get("amplitudes") if name == "loading" else None
+        if isinstance(steps, list):
+            counts = values.get("cycles")
+            counts = counts if isinstance(counts, list) and counts else [counts or 1]
+            with faults.kept():
+                whole = [_arguments.integer(one, "loading: cycles") for one in counts]
+                many = sum(whole) if len(whole) > 1 else whole[0] * len(steps)
+                if many > _MOST_CYCLES:
+                    text = f"{many} cycles are too many here; at most {_MOST_CYCLES}"
+                    faults.add(f"{i}.cycles", f"cycles = {counts[0]}: {text}")
+
+
+def refuse_files(text: str) -> None:
+    """Refuse keys that name files, outside of texts and comments, which end with their line."""
+    for number, line in enumerate(text.splitlines(), 1):
+        bare, quote = [], ""
+        for letter in line:
+            if not quote and letter == "!":
+                break
+            if not quote and letter in "'\"":
+                quote = letter
+            elif letter == quote:
+                quote = ""
+            elif not quote:
+                bare.append(letter)
+        if quote:
+            raise InputError(f"line {number}: a text is not closed; put {quote} at its end")
+        key = re.search(rf"\b({'|'.join(_FILES)})\b", "".join(bare), re.IGNORECASE)
+        if key:
+            raise InputError(
+                f"line {number}: {key[0].lower()} = names a file, which a page does not read; "
+                "start rbsdem explore CASE.nml, which puts histories into the case"
+            )
+
+
+def drawn_of(case: Case, drawn_here: bool) -> tuple[Case, Drawn | None]:
+    """Return the case that is computed, and its column as it was drawn; None without a drawing.
+
+    Parameters
+    ----------
+    case : Case
+        A case of a column.
+    drawn_here : bool
+        Whether the page draws it: then half of a column in double curvature is computed along a
+        path, which moves by half of what its ends do.
+    """
+    column = case.column
+    if not isinstance(column, LayeredColumn) or column.drawing is None:
+        return case, None
+    model = column.drawing
+    whole = case.displacement is None or column.footing is not None or column.top != "fixed"
+    if whole or not drawn_here or case.displacement is None:
+        return case, Drawn(column, model.section, model.height, 1.0)
+    half = columns.column(
+        model.section, model.height, axial_load=column.axial_load,
+        model_parameters=model.parameters, restrained=model.restrained,
+        round_core=model.round_core,
+    )  # fmt: skip
+    moved = dataclasses.replace(case, column=half, displacement=0.5 * case.displacement)
+    return moved, Drawn(half, model.section, model.height, 2.0)
+
+
+def sections_of(case: Any) -> dict[str, Section | None]:
+    """Return the sections of a case by the names of their drawings; None for a wrong one."""
+    found: dict[str, Section | None] = {}
+    for name, block in drawings(case):
+        parts: dict[str, list[dict[str, Any]]] = {}
+        for i in block:
+            values = {key: value for key, value in case[i][1].items() if value is not None}
+            parts.setdefault(case[i][0], []).append(values)
+        try:
+            with recorded():
+                found[name] = section_of(parts)
+        except (InputError, TypeError, ValueError, KeyError, AttributeError, OverflowError):
+            # What is wrong is told by the reader of the case.
+            found[name] = None
+    return found
 
 
 # ---- numbers for JSON ---------------------------------------------------------------------------

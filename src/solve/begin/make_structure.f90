@@ -40,6 +40,13 @@ contains
       class(column_type), allocatable :: column
       type(frame_type), allocatable :: frame
 
+      if (case%is_drawn()) then
+         call fatal_error(error, bad_input, trim(case%drawn_at//' ')//' the case is drawn by sections, or has '// &
+                          'loads that are made of others, and this executable solves springs: type rbsdem '// &
+                          'run CASE.nml with the Python package installed, or make its springs there: '// &
+                          'rbsdem draw CASE.nml > springs.nml')
+         return
+      end if
       if (allocated(case%frame)) then
          allocate (frame)
          call make_frame(case, frame, before, error)
@@ -59,14 +66,6 @@ contains
       type(modes_type) :: modes
       integer :: i, j
 
-      if (case%is_drawn_frame()) then
-         call messages%add(trim(case%drawn_at//' ')//' the frame is drawn by sections, or has loads that '// &
-                           'are made of others, and this executable solves springs: type rbsdem run '// &
-                           'CASE.nml with the Python package installed, or make its springs there: '// &
-                           'rbsdem draw CASE.nml > springs.nml')
-         call messages%raise(error)
-         return
-      end if
       if (.not. allocated(case%parts)) then
          allocate (case%parts)
          call case%parts%find(case%frame, messages)

@@ -68,6 +68,8 @@ module rbs_structure_column_column_record
       !> Whether there is a footing, that is, whether springs are given for joint 0; mass [kg],
       !> rotary inertia about its centroid [kg m2] and height [m] of the footing
       logical :: footing = .false.
+      !> Whether its springs, but for those beneath a footing, and its mass are made of its section by Python
+      logical :: drawn = .false.
       real(wp) :: footing_mass = 0.0_wp, footing_inertia = 0.0_wp, footing_height = 0.0_wp, depth = 0.0_wp
       !> One for all bodies or n; not allocated: m (l^2 + depth^2)/12 [kg m2]
       real(wp), allocatable :: rotary_inertia(:)
@@ -94,8 +96,8 @@ contains
       call v%key('n', self%n, '', bound_type(1.0_wp, real(most_bodies, wp)), 'number of rigid bodies')
       call v%key('height', self%height, 'm', above_zero, 'height of the column')
       call v%key('mass', self%mass, 'kg', above_zero, &
-                 'mass of the column, in proportion to the lengths; not needed with masses', &
-                 optional=allocated(self%masses))
+                 'mass of the column, in proportion to the lengths; not needed with masses, or with a section alone', &
+                 optional=allocated(self%masses) .or. self%drawn)
       call v%key('lengths', self%lengths, 'm', above_zero, &
                  'lengths of the bodies from the ground up; without them all are equal', most_bodies)
       call v%key('masses', self%masses, 'kg', above_zero, 'masses of the bodies from the ground up', &
@@ -273,7 +275,9 @@ contains
          character(len=*), intent(in) :: name, place
          integer :: i
 
-         if (.not. allocated(springs)) then
+         if (self%drawn) then
+            if (allocated(springs)) call check_spring(springs(1), name//' spring of joint 0', name, place)
+         else if (.not. allocated(springs)) then
             call messages%add('column: the '//name//' spring is missing; give one for every joint')
          else if (size(springs) == 1 .and. .not. self%footing) then
             call check_spring(springs(1), name//' spring', name, place)

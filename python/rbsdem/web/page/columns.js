@@ -2,7 +2,8 @@
 
 import { inUnits, shown, unitOf } from "./units.js";
 import { drawColumn, scalesOf } from "./drawing.js";
-import { COLUMN_FIELDS, LOADINGS, LOADING_FIELDS, drawForm, element, putAt, refreshFields, showFaults, toldOf, valueAt } from "./fields.js";
+import { LOADING_FIELDS, element, fieldGroup, fieldRow, fieldsOf, groupOf, isShaken, isText, loadingRows, loadingValue, nameOf, placeOf, putAt, putLoading, refreshFields, showFaults, toldAs, valuesOf } from "./fields.js";
+import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue } from "./section.js";
 import { codeTable, curvatureChart, interactionChart, loopChart, nameOfState, nearCards, rowsOfNear, scaleChart, stateTables, timeChart } from "./panels.js";
 import { beside, changed, copied, edit, fixed, get, keyOf, page, say, showNotes, showStatus } from "./machine.js";
 
@@ -11,7 +12,23 @@ let active = 0, scalesDrawn = [], chart = null;
 const loops = () => columnsView.stood.loops?.columns ?? [];
 const besideLoops = name => beside(name, columnsView)?.columns ?? null;
 const isMotion = () => loops().some(loop => loop.dynamic);
-const group = value => value && typeof value === "object" && !Array.isArray(value) ? value : {};
+const cases = () => columnsView.state.cases;
+
+const COLUMN = [
+  { path: "column.top", label: "Ends", choices: [["free", "cantilever"], ["fixed", "double curvature"]] },
+  { path: "column.height", label: "Height", dimension: "length", step: 0.05 },
+  { path: "column.axial_load", label: "Axial load, compression +", dimension: "force", step: 1e4 },
+  { path: "column.top_mass", label: "Mass at the top", dimension: "mass", step: 1e3, optional: "axial load / g", motion: true },
+  { path: "footing.kind", label: "Foot", choices: [["none", "rigid ground"], ["springs", "footing on springs"]] },
+  { path: "flexure.k", label: "Springs against turning", dimension: "turning", step: 1e7, footing: true },
+  { path: "shear.k", label: "Springs against sliding", dimension: "stiffness", step: 1e7, footing: true },
+  { path: "column.footing_height", label: "Height of the footing", dimension: "length", step: 0.05, footing: true },
+  { path: "column.footing_mass", label: "Mass of the footing", dimension: "mass", step: 1e3, footing: true },
+];
+const COLUMN_SHAPES = ["rectangle", "circle", "hollow_rectangle", "hollow_circle", "wall"];
+const KNOWN = fieldsOf([...SECTION_KEYS, ...COLUMN, ...LOADING_FIELDS]);
+const FIELDS = [...SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path), ...COLUMN, ...LOADING_FIELDS];
+const onSprings = groups => Boolean(groupOf(groups, "flexure"));
 
 export const columnsView = {
   name: "columns", label: "columns", scrubs: "loops",
@@ -21,18 +38,10 @@ export const columnsView = {
   accepts: answer => answer.columns.every(loop => loop.displacement),
   exported: () => ({ column: active }),
   rowsOf: id => id === "near" ? rowsOfNear(columnsView.stood.near.state, columnsView.stood.near) : null,
-  isState: ({ columns }) => Array.isArray(columns) && columns.length >= 1 && columns.length <= 2 && columns.every(one => one && typeof one === "object"),
-  // A state with all its groups.
-  tidied: ({ columns, loading }) => ({ columns: columns.map((column, i) => {
-    const name = String(column.name ?? "AB"[i]);
-    if ("case" in column) return { name, case: String(column.case) };
-    const { section, concrete, bars, ties, column: frame, footing } = column;
-    return { name, section: { ...group(section), shape: String(section?.shape ?? "rectangle") }, concrete: group(concrete), bars: group(bars), ties: group(ties), column: group(frame), ...(footing ? { footing: group(footing) } : {}) };
-  }), loading }),
-  settle() { active = Math.min(active, columnsView.state.columns.length - 1); },
+  settle() { active = Math.min(active, cases().length - 1); },
   begin() { columnsView.settle(); },
-  put(path, value) { putAt(path.startsWith("loading.") ? columnsView.state : columnsView.state.columns[active], path, value); },
-  refresh() { refreshFields(get("form"), [...COLUMN_FIELDS.flatMap(({ fields }) => fields), ...LOADING_FIELDS], valueOf, page.system); },
+  put,
+  refresh() { refreshFields(get("form"), FIELDS, valueOf, page.system); },
   resized() { columnsView.showLoops(); showSections(); },
   showAll() { columnsView.showForm(); columnsView.showDrawings(); columnsView.showLoops(); showSections(); showNear(); columnsView.showMessages(); },
   complete, showDrawings, showForm, showLoops, showMessages, showPoint, showStatus: showState,
@@ -46,7 +55,43 @@ export const columnLanes = [
   { lane: "nearest", name: "near", delay: 250, show: showNear, asks: () => page.withTests },
 ];
 
-const valueOf = path => valueAt(path.startsWith("loading.") ? columnsView.state : columnsView.state.columns[active], path);
+function valueOf(path) {
+  const groups = cases()[active];
+  if (isText(groups)) return null;
+  if (path.startsWith("loading.")) return loadingValue(valuesOf(groups, "loading"), path.slice(8));
+  if (path === "footing.kind") return onSprings(groups) ? "springs" : "none";
+  return sectionValue(groups, path);
+}
+
+function put(path, value) {
+  const groups = cases()[active];
+  if (path === "text") cases()[active] = value;
+  else if (path.startsWith("loading.")) {
+    // Columns side by side have one loading.
+    for (const one of cases()) if (!isText(one)) putLoading(one, path.slice(8), value);
+  } else if (path === "footing.kind") setFooting(groups, value === "springs");
+  else if (!completeSection(groups, groups, path, value)) putAt(groups, path, value);
+  if (path.startsWith("column.footing_")) setInertia(valuesOf(groups, "column"));
+}
+
+// A footing, as soft as the column itself, so that it shows; or none.
+function setFooting(groups, springs) {
+  const column = valuesOf(groups, "column");
+  for (const name of ["shear", "flexure"]) if (groupOf(groups, name)) groups.splice(groups.indexOf(groupOf(groups, name)), 1);
+  if (springs) {
+    groups.splice(groups.indexOf(groupOf(groups, "column")) + 1, 0, ["shear", { joint: [0], rule: "elastic", k: 1e9 }], ["flexure", { joint: [0], rule: "elastic", k: 1e8 }]);
+    column.footing_height = 0.6;
+    column.footing_mass = 4e3;
+    setInertia(column);
+  } else for (const name of ["height", "mass", "inertia"]) delete column[`footing_${name}`];
+}
+
+// The rotary inertia of a block of concrete with a square plan.
+function setInertia(column) {
+  const { footing_height: height, footing_mass: mass } = column;
+  if (height > 0 && mass > 0) column.footing_inertia = mass * (mass / (2400 * height) + height ** 2) / 12;
+  else delete column.footing_inertia;
+}
 
 // ---- what is shown ---------------------------------------------------------------------------------
 
@@ -71,7 +116,7 @@ function showLoops() {
 function showState() {
   const words = [], bands = besideLoops("bands");
   loops().forEach((loop, i) => {
-    const name = loops().length > 1 ? `${columnsView.stood.loops.state.columns[i].name}: ` : "";
+    const name = loops().length > 1 ? `${nameOf(columnsView.stood.loops.state, i)}: ` : "";
     const seconds = loop.seconds ? ` in ${Math.max(1, Math.round(1e3 * loop.seconds))} ms` : "";
     words.push(`${name}${loop.model ? loop.model + ", " : ""}${loop.displacement.length} points${seconds}`);
   });
@@ -99,9 +144,9 @@ function showTime() {
   get("scales").hidden = false;
   if (!isMotion()) return;
   const of = columnsView.stood.loops.state, scales = besideLoops("scales") ?? [];
-  timeChart(get("timefigure"), loops().map((loop, i) => loop?.time && { time: loop.time, drift: loop.displacement.map(value => value / loop.height), name: of.columns[i].name }));
+  timeChart(get("timefigure"), loops().map((loop, i) => loop?.time && { time: loop.time, drift: loop.displacement.map(value => value / loop.height), name: nameOf(of, i) }));
   scaleChart(get("scalefigure"), of, scales);
-  get("scales").hidden = of.columns.every(one => "case" in one);
+  get("scales").hidden = of.cases.every(isText);
   get("scalestate").textContent = scales.some(one => one.scales) ? "Crosses: collapse or axial failure" : "Computing other scales of the motion";
 }
 
@@ -125,17 +170,18 @@ function showNear() {
 
 function showDrawings() {
   const host = get("drawings"), { state, latest } = columnsView, { system } = page;
-  get("draw").hidden = state.columns.every(one => "case" in one);
+  get("draw").hidden = state.cases.every(isText);
   const focused = document.activeElement?.dataset?.path && host.contains(document.activeElement) ? [document.activeElement.closest("[data-column]").dataset.column, document.activeElement.dataset.path] : null;
-  while (host.children.length > state.columns.length) host.lastChild.remove();
-  state.columns.forEach((column, i) => {
+  while (host.children.length > state.cases.length) host.lastChild.remove();
+  state.cases.forEach((groups, i) => {
     let box = host.children[i];
     if (!box) { box = element("div", { className: "drawbox" }); host.append(box); }
     box.dataset.column = i;
-    if ("case" in column) { box.replaceChildren(element("p", { className: "empty" }, `Column ${column.name} is a case file: nothing is drawn here.`)); return; }
+    if (isText(groups)) { box.replaceChildren(element("p", { className: "empty" }, `Column ${nameOf(state, i)} is a case file: nothing is drawn here.`)); return; }
+    const column = drawingOf(groups);
     if (!page.dragging) scalesDrawn[i] = scalesOf(column);
     const newest = latest?.columns[i];
-    drawColumn(box, column, newest?.figure, { system, scales: scalesDrawn[i] ?? scalesOf(column), kind: "ab"[i], title: column.name, fixed, stale: latest?.key !== keyOf(state) || Boolean(newest?.faults.length),
+    drawColumn(box, column, newest?.figure, { system, scales: scalesDrawn[i] ?? scalesOf(column), kind: "ab"[i], title: nameOf(state, i), fixed, stale: latest?.key !== keyOf(state) || Boolean(newest?.faults.length),
       move: (path, value, done) => { choose(i); edit(path, value, done, true); }, moved: (path, begins = false) => { page.dragging = begins; if (!begins) showDrawings(); } });
   });
   if (focused) host.querySelector(`[data-column="${focused[0]}"] [data-path="${focused[1]}"]`)?.focus();
@@ -143,17 +189,18 @@ function showDrawings() {
 
 function showMessages() {
   const { latest } = columnsView, { system } = page, newest = latest?.columns ?? [], of = latest?.state;
-  const all = newest.flatMap((loop, i) => loop.faults.map(fault => ({ field: fault.field, text: toldOf(fault, of, of.columns[i], system), column: i })));
+  const all = newest.flatMap((loop, i) => loop.faults.map(fault => ({ ...fault, told: isText(of.cases[i]) ? fault.text : toldAs(fault, KNOWN, of.cases[i], system), column: i })));
   const left = showFaults(get("form"), all.filter(fault => fault.column === active));
-  const notes = [], named = i => newest.length > 1 ? `Column ${latest.state.columns[i].name}: ` : "";
-  for (const fault of all.filter(one => one.column !== active && !one.field.startsWith("loading."))) left.push(named(fault.column) + fault.text);
+  const notes = [], named = i => newest.length > 1 ? `Column ${nameOf(latest.state, i)}: ` : "";
+  for (const fault of all.filter(one => one.column !== active && !all.some(other => other.column === active && other.told === one.told))) left.push(named(fault.column) + fault.told);
   newest.forEach((loop, i) => {
     if (loop.stopped) notes.push(named(i) + inUnits(loop.stopped, system));
     if (loop.status === "axial_failure") notes.push(named(i) + "the column can no longer carry its axial load; the loop ends there");
     for (const text of loop.notes) notes.push(named(i) + inUnits(text, system));
   });
   showNotes(left, notes);
-  if (all.length) say([...new Set(all.map(fault => fault.text))].join("; "));
+  if (latest && latest.key !== keyOf(columnsView.state)) return;
+  if (all.length) say([...new Set(all.map(fault => fault.told))].join("; "));
   else {
     const last = newest.flatMap(loop => loop.states ?? []).map(at => `${nameOfState(at.name)} at ${shown(100 * Math.abs(at.drift), 2)} %`);
     if (!page.dragging && newest[0]?.figures) say(`Largest force ${shown(newest[0].figures.peak_force / unitOf(system, "force")[1])} ${unitOf(system, "force")[0]}. ${last.join(", ")}`);
@@ -164,17 +211,22 @@ function showTabs() {
   const host = get("tabs"), { state } = columnsView;
   host.ariaLabel = "Columns";
   host.replaceChildren();
-  state.columns.forEach((column, i) => {
-    const tab = element("button", { type: "button", className: "tab " + "ab"[i] }, `Column ${column.name || "AB"[i]}`);
+  state.cases.forEach((_, i) => {
+    const tab = element("button", { type: "button", className: "tab " + "ab"[i] }, `Column ${nameOf(state, i)}`);
     tab.setAttribute("aria-pressed", String(i === active));
     tab.addEventListener("click", () => { choose(i); host.children[i].focus(); });
     host.append(tab);
   });
   if (fixed) return;
-  const add = element("button", { type: "button", id: "second" }, state.columns.length > 1 ? "Remove B" : "Compare with a second column");
+  const add = element("button", { type: "button", id: "second" }, state.cases.length > 1 ? "Remove B" : "Compare with a second column");
   add.addEventListener("click", () => {
-    if (state.columns.length > 1) { state.columns.pop(); active = 0; }
-    else { state.columns.push({ ...copied(state.columns[0]), name: "B" }); active = 1; }
+    if (state.cases.length > 1) { state.cases.pop(); active = 0; }
+    else {
+      const second = copied(state.cases[0]);
+      if (!isText(second)) putAt(second, "case.title", "B");
+      state.cases.push(second);
+      active = 1;
+    }
     changed(true);
     get("second").focus();
   });
@@ -183,7 +235,22 @@ function showTabs() {
 
 function showForm() {
   showTabs();
-  drawForm(get("form"), columnsView.state, active, page.system, edit, fixed);
+  const groups = cases()[active], { system } = page;
+  if (isText(groups)) {
+    const text = element("textarea", { id: "f-case", value: groups, rows: 14, spellcheck: false, readOnly: fixed });
+    text.setAttribute("aria-describedby", "f-case-fault");
+    text.dataset.path = "";
+    text.addEventListener("input", () => edit("text", text.value, false));
+    text.addEventListener("change", () => edit("text", text.value, true));
+    const row = element("div", { className: "row wide" }, element("label", { htmlFor: "f-case" }, "Case file"), text, element("p", { className: "fault", id: "f-case-fault", hidden: true }));
+    get("form").replaceChildren(...fieldGroup("Column and loading of a case file", [row]));
+  } else {
+    const rows = COLUMN.filter(field => (!field.motion || isShaken(groups)) && (!field.footing || onSprings(groups)))
+      .map(field => fieldRow(field, valueOf(field.path), system, (value, done) => edit(field.path, value, done), fixed, placeOf(groups, field.path)));
+    const act = change => { change(); changed(true); };
+    get("form").replaceChildren(...sectionRows(groups, groups, { system, edit, act, fixed, shapes: COLUMN_SHAPES }), ...fieldGroup("Column", rows),
+      ...fieldGroup(cases().length > 1 ? "Loading of both columns" : "Loading", loadingRows(groups, system, edit, fixed, LOADING_FIELDS)));
+  }
   showMessages();
 }
 
@@ -193,26 +260,15 @@ function choose(i) {
   showForm();
 }
 
-// A choice brings the values that it needs.
+// What is drawn of a column: its first groups by their names.
+function drawingOf(groups) {
+  const found = name => ({ ...valuesOf(groups, name) });
+  return { section: found("section"), concrete: found("concrete"), layout: groupOf(groups, "layout") && found("layout"), column: found("column"), footed: onSprings(groups) };
+}
+
+// Whether a value changes what there is to be filled in.
 function complete(path) {
-  const { state } = columnsView, column = state.columns[active], { section } = column;
-  if (path === "section.shape") {
-    const round = section.shape.includes("circle"), size = round ? section.width : section.diameter;
-    if (round) section.diameter ??= size ?? 0.5;
-    else { section.width ??= size ?? 0.4; section.depth ??= size ?? 0.4; }
-    if (section.shape.startsWith("hollow")) section.wall ??= Number((0.25 * (round ? section.diameter : Math.min(section.width, section.depth))).toPrecision(3));
-    return true;
-  }
-  if (path === "footing.kind") {
-    // As soft as the column itself is a footing that shows.
-    if (column.footing.kind === "springs") { column.footing.rotation ??= 1e8; column.footing.sliding ??= 1e9; column.footing.height ??= 0.6; column.footing.mass ??= 4e3; }
-    return true;
-  }
-  if (path === "loading.kind") {
-    state.loading = copied(LOADINGS[state.loading.kind] ?? { kind: state.loading.kind });
-    return true;
-  }
-  return false;
+  return ["section.shape", "bars.kind", "footing.kind", "loading.kind"].includes(path);
 }
 
 if (!fixed) get("code").addEventListener("change", () => columnsView.lanes.sections.go());

@@ -2,12 +2,12 @@
 
 import { svgElement } from "./chart.js";
 import { barSize, shown, stepOf, unitOf } from "./units.js";
-import { valueAt } from "./fields.js";
 
+const valueIn = (drawing, path) => path.split(".").reduce((part, name) => part?.[name], drawing);
 const SECTION = 190, LEFT = 26, TOP = 16, HEIGHT = 250, TALL = 200;
 
 // The handles of a section: where each is, which field it moves, how a pixel moves it, steps of the keys.
-function handlesOf({ section, bars }, look) {
+function handlesOf({ section, layout }, look) {
   const round = section.shape.includes("circle");
   const { scale, cx, cy } = look, half = size => 0.5 * size * scale;
   const found = [];
@@ -21,7 +21,7 @@ function handlesOf({ section, bars }, look) {
   found.push({ path: "section.cover", label: "Cover", x: cx - (round ? 0 : 0.25 * section.width * scale), y: cy - half(depth) + section.cover * scale, way: [0, 1 / scale], grid: 0.001, cursor: "ns-resize", least: 0 });
   if ("wall" in section && section.shape.startsWith("hollow"))
     found.push({ path: "section.wall", label: "Wall", x: cx - half(round ? section.diameter : section.width) + section.wall * scale, y: cy, way: [1 / scale, 0], grid: 0.01, cursor: "ew-resize" });
-  if (look.bar && bars) found.push({ path: "bars.diameter", label: "Bar diameter", x: look.bar[0] + 0.5 * bars.diameter * scale, y: look.bar[1], way: [2 / scale, 0], bar: true, cursor: "ew-resize" });
+  if (look.bar && typeof layout?.diameter === "number") found.push({ path: "layout.diameter", label: "Bar diameter", x: look.bar[0] + 0.5 * layout.diameter * scale, y: look.bar[1], way: [2 / scale, 0], bar: true, cursor: "ew-resize" });
   return found;
 }
 
@@ -40,7 +40,7 @@ function sectionInto(svg, { section }, figure, scale, system) {
   const wide = round ? section.diameter : section.width, deep = round ? section.diameter : section.depth;
   svg.append(round
     ? svgElement("circle", { class: "concrete", cx, cy, r: Math.max(0, 0.5 * wide * scale) })
-    : section.slab && figure ? svgElement("path", { class: "concrete", d: line(figure.outline) })
+    : ["tee", "wall"].includes(section.shape) && figure ? svgElement("path", { class: "concrete", d: line(figure.outline) })
     : svgElement("rect", { class: "concrete", x: X(-wide / 2), y: Y(deep / 2), width: Math.max(0, wide * scale), height: Math.max(0, deep * scale) }));
   let bar = null;
   if (figure) {
@@ -58,7 +58,7 @@ function sectionInto(svg, { section }, figure, scale, system) {
   return { scale, cx, cy, bar };
 }
 
-const scaleOf = ({ section }) => 150 / Math.max(...(section.shape.includes("circle") ? [positive(section.diameter, 0.4)] : [positive(section.slab ? section.flange : section.width, 0.4), positive(section.depth, 0.4)]));
+const scaleOf = ({ section }) => 150 / Math.max(...(section.shape.includes("circle") ? [positive(section.diameter, 0.4)] : [positive(section.flange_width ?? section.width, 0.4), positive(section.depth, 0.4)]));
 
 // A section alone, with its handles; a scale that is given stays while a handle moves. Returns the scale.
 export function drawSection(host, drawing, figure, { system, scale = scaleOf(drawing), title, kind, move, moved, stale }) {
@@ -84,8 +84,8 @@ function positive(value, otherwise) {
   return typeof value === "number" && value > 0 ? value : otherwise;
 }
 
-function footingHeight({ footing }) {
-  return footing?.kind === "springs" ? positive(footing.height, 0) : 0;
+function footingHeight({ footed, column }) {
+  return footed ? positive(column.footing_height, 0) : 0;
 }
 
 // host gets one svg; `move(path, value, done)` is called while a handle moves.
@@ -97,8 +97,8 @@ export function drawColumn(host, column, figure, { system, scales, kind, title, 
   const [unit, factor] = unitOf(system, "length");
   const measure = (x, y, value, anchor = "middle") => svg.append(svgElement("text", { class: "size", x, y, "text-anchor": anchor }, value));
   // The column from the side: as wide as the section is deep, at its own scale.
-  const double = frame.ends === "double", px = LEFT + SECTION + 78, ground = HEIGHT - 28, tall = scales.tall;
-  const springs = column.footing?.kind === "springs", foot = ground - footingHeight(column) * tall;
+  const double = frame.top === "fixed", px = LEFT + SECTION + 78, ground = HEIGHT - 28, tall = scales.tall;
+  const springs = column.footed, foot = ground - footingHeight(column) * tall;
   const ptop = foot - frame.height * tall, thick = Math.max(6, Math.min(60, deep * tall)), stub = 11;
   const hatch = y => { let d = ""; for (let i = 0; i < 9; i++) d += `M${px - 40 + i * 10} ${y}l-7 7`; return d; };
   svg.append(svgElement("rect", { class: "concrete", x: px - thick / 2, y: ptop, width: thick, height: Math.max(0, foot - ptop) }));
@@ -130,7 +130,7 @@ export function drawColumn(host, column, figure, { system, scales, kind, title, 
 }
 
 function handleElement(svg, handle, column, { system, move, moved }) {
-  const value = valueAt(column, handle.path), dimension = handle.dimension ?? "length";
+  const value = valueIn(column, handle.path), dimension = handle.dimension ?? "length";
   const [unit, factor] = unitOf(system, dimension);
   const grid = handle.bar ? 0 : stepOf(system, dimension, handle.grid), least = handle.least ?? grid;
   const g = svgElement("g", { class: "handle", tabindex: 0, role: "slider", "aria-label": handle.label, "data-path": handle.path,
@@ -143,7 +143,7 @@ function handleElement(svg, handle, column, { system, move, moved }) {
     if (event.button) return;
     event.preventDefault();
     const box = svg.getBoundingClientRect(), zoom = svg.viewBox.baseVal.width / box.width;
-    const from = [event.clientX, event.clientY], before = valueAt(column, handle.path);
+    const from = [event.clientX, event.clientY], before = valueIn(column, handle.path);
     let last = before;
     const drag = now => {
       last = before + zoom * ((now.clientX - from[0]) * handle.way[0] + (now.clientY - from[1]) * handle.way[1]);
@@ -165,7 +165,7 @@ function handleElement(svg, handle, column, { system, move, moved }) {
     const way = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 5, PageDown: -5 }[event.key];
     if (!way) return;
     event.preventDefault();
-    const now = valueAt(column, handle.path);
+    const now = valueIn(column, handle.path);
     put(handle.bar ? barSize(system, now, way) : now + way * grid, true);
   });
   return g;

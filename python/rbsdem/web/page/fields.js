@@ -1,78 +1,107 @@
-// The fields of the form: what a number is called, its dimension, where it stands in the state.
+// The fields of the form: what a number is called, its dimension, which key of a case it is.
 
 import { barSize, inUnits, parsed, stepOf, typed, unitOf } from "./units.js";
 
-const ROUND = ["circle", "hollow_circle"], BOXED = ["rectangle", "hollow_rectangle"];
-const HOLLOW = ["hollow_rectangle", "hollow_circle"];
+// A case is the list of the groups of a case file, [name, {key: value}], or the text of one. A path is "group.key", of the first
+// such group of a list, "steel@layout.fy", of the steel that the layout names, or "3.key", of the group at that place.
 
-// path, label, dimension, step of the arrow keys in SI, and for which shapes
-export const COLUMN_FIELDS = [
-  { group: "Section", fields: [
-    { path: "section.shape", label: "Shape", choices: [["rectangle", "rectangle"], ["circle", "circle"], ["hollow_rectangle", "hollow rectangle"], ["hollow_circle", "ring"]] },
-    { path: "section.width", label: "Width", dimension: "length", step: 0.01, shapes: BOXED },
-    { path: "section.depth", label: "Depth, along the load", dimension: "length", step: 0.01, shapes: BOXED },
-    { path: "section.diameter", label: "Diameter", dimension: "length", step: 0.01, shapes: ROUND },
-    { path: "section.wall", label: "Wall", dimension: "length", step: 0.01, shapes: HOLLOW },
-    { path: "section.cover", label: "Clear cover to hoops", dimension: "length", step: 0.001 },
-    { path: "concrete.fc", label: "Concrete strength", dimension: "stress", step: 1e6 },
-  ] },
-  { group: "Longitudinal bars", fields: [
-    { path: "bars.number", label: "Number", dimension: "number", whole: true, step: 1 },
-    { path: "bars.face", label: "On the tension face", dimension: "number", whole: true, step: 1, optional: "number/4 + 1", shapes: BOXED },
-    { path: "bars.diameter", label: "Diameter", dimension: "length", bar: true },
-    { path: "bars.fy", label: "Yield stress", dimension: "stress", step: 1e7 },
-    { path: "bars.fu", label: "Ultimate stress", dimension: "stress", step: 1e7, optional: "1.5 × yield" },
-  ] },
-  { group: "Transverse bars", fields: [
-    { path: "ties.hoops", label: "Kind", choices: [[false, "spiral"], [true, "single hoops"]], shapes: ROUND },
-    { path: "ties.diameter", label: "Diameter", dimension: "length", bar: true },
-    { path: "ties.spacing", label: "Spacing", dimension: "length", step: 0.005 },
-    { path: "ties.legs", label: "Legs along the load", dimension: "number", step: 1, optional: "2", shapes: BOXED },
-    { path: "ties.legs_across", label: "Legs across", dimension: "number", step: 1, optional: "as along", shapes: BOXED },
-    { path: "ties.fy", label: "Yield stress", dimension: "stress", step: 1e7 },
-    { path: "ties.fu", label: "Ultimate stress", dimension: "stress", step: 1e7, optional: "1.5 × yield" },
-  ] },
-  { group: "Column", fields: [
-    { path: "column.ends", label: "Ends", choices: [["cantilever", "cantilever"], ["double", "double curvature"]] },
-    { path: "column.height", label: "Height", dimension: "length", step: 0.05 },
-    { path: "column.axial_load", label: "Axial load, compression +", dimension: "force", step: 1e4 },
-    { path: "column.top_mass", label: "Mass at the top", dimension: "mass", step: 1e3, optional: "axial load / g", motion: true },
-    { path: "footing.kind", label: "Foot", choices: [["none", "rigid ground"], ["springs", "footing on springs"]] },
-    { path: "footing.rotation", label: "Springs against turning", dimension: "turning", step: 1e7, footing: true },
-    { path: "footing.sliding", label: "Springs against sliding", dimension: "stiffness", step: 1e7, footing: true },
-    { path: "footing.height", label: "Height of the footing", dimension: "length", step: 0.05, footing: true },
-    { path: "footing.mass", label: "Mass of the footing", dimension: "mass", step: 1e3, footing: true, motion: true },
-  ] },
-];
+export const groupOf = (groups, name) => {
+  const [what, owner] = name.split("@"), id = owner && groupOf(groups, owner)?.[1].steel;
+  return groups.find(([own, values]) => own === what && (!owner || id === undefined || values.id === id));
+};
+export const valuesOf = (groups, name) => groupOf(groups, name)?.[1];
+export const isText = one => typeof one === "string";
+export const nameOf = (state, i) => (!isText(state.cases[i]) && valuesOf(state.cases[i], "case")?.title) || "AB"[i];
+
+const parts = path => { const at = path.lastIndexOf("."); return [path.slice(0, at), path.slice(at + 1)]; };
+const find = (groups, name) => /^\d+$/.test(name) ? groups[Number(name)] : groupOf(groups, name);
+
+export function valueAt(groups, path) {
+  const [name, key] = parts(path);
+  return find(groups, name)?.[1][key];
+}
+
+// Put a value where its path says; a group that is not there is added behind the others of `own`.
+export function putAt(groups, path, value, own = groups) {
+  const [name, key] = parts(path);
+  let found = find(/^\d+$/.test(name) ? groups : own, name);
+  if (!found) {
+    if (value === null) return;
+    found = [name.split("@")[0], {}];
+    groups.splice(groups.indexOf(own.at(-1)) + 1, 0, found);
+  }
+  if (value === null) delete found[1][key];
+  else found[1][key] = value;
+  if (!Object.keys(found[1]).length && OPTIONAL.includes(found[0])) groups.splice(groups.indexOf(found), 1);
+}
+
+// Groups that are there only with a value.
+const OPTIONAL = ["lap", "damping"];
+
+// The path of a value by the place of its group, as messages have it.
+export function placeOf(groups, path, own = groups) {
+  const [name, key] = parts(path), found = find(/^\d+$/.test(name) ? groups : own, name);
+  return found ? `${groups.indexOf(found)}.${key}` : path;
+}
+
+// Path by names of a path by places.
+export function namedPath(groups, path) {
+  const [name, key] = parts(path);
+  return /^\d+$/.test(name) ? `${groups[Number(name)]?.[0]}.${key}` : `${name.split("@")[0]}.${key}`;
+}
+
+// The groups of each drawing, from its own on.
+const OF_DRAWING = ["section", "concrete", "steel", "bars", "row", "layout", "inner_layout", "ties", "spiral", "boundary", "curtain", "lap", "parameter"];
+export function drawingsOf(groups) {
+  const found = [];
+  for (const one of groups) {
+    if (one[0] === "drawing") found.push([one]);
+    else if (found.length && OF_DRAWING.includes(one[0])) found.at(-1).push(one);
+  }
+  return found;
+}
 
 export const LOADING_FIELDS = [
   { path: "loading.kind", label: "Loading", choices: [["amplitudes", "cycles of drift"], ["named", "protocol of the literature"], ["synthetic", "synthetic earthquake"], ["record", "record from a file"]] },
+  { path: "loading.values", label: "Roof displacement of the push", dimension: "length", list: true, kinds: ["push"] },
   { path: "loading.amplitudes", label: "Drifts", dimension: "drift", list: true, kinds: ["amplitudes"] },
-  { path: "loading.cycles", label: "Cycles at each", dimension: "number", whole: true, step: 1, kinds: ["amplitudes"] },
-  { path: "loading.name", label: "Protocol", kinds: ["named"], choices: [["sac", "SAC 1997"], ["aci_374_1", "ACI 374.1"], ["aci_374_2", "ACI 374.2R"], ["fema_461", "FEMA 461"], ["curee", "CUREE"], ["atc_24", "ATC-24"]] },
+  { path: "loading.cycles", label: "Cycles at each", dimension: "number", whole: true, list: true, kinds: ["amplitudes"] },
+  { path: "loading.protocol", label: "Protocol", kinds: ["named"], choices: [["sac", "SAC 1997"], ["aci_374_1", "ACI 374.1"], ["aci_374_2", "ACI 374.2R"], ["fema_461", "FEMA 461"], ["curee", "CUREE"], ["atc_24", "ATC-24"]] },
   { path: "loading.reference", label: "Reference drift", dimension: "drift", step: 0.001, optional: "of the protocol", kinds: ["named"] },
   { path: "loading.largest", label: "Largest drift", dimension: "drift", step: 0.005, optional: "of the protocol", kinds: ["named"] },
   { path: "loading.seed", label: "Number of the earthquake", dimension: "number", whole: true, step: 1, kinds: ["synthetic"] },
   { path: "loading.scale", label: "Times", dimension: "ratio", step: 0.1, kinds: ["synthetic", "record"] },
 ];
 
+const CYCLIC = { drive: "displacement", unit: "drift" }, GROUND = { drive: "ground_acceleration", scale: 1 };
 export const LOADINGS = {
-  amplitudes: { kind: "amplitudes", amplitudes: [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06], cycles: 2 },
-  named: { kind: "named", name: "aci_374_1", largest: 0.06 },
-  synthetic: { kind: "synthetic", seed: 1, scale: 1 },
-  record: { kind: "record", id: "", name: "", scale: 1 },
+  push: { drive: "displacement", values: [0.288] },
+  amplitudes: { ...CYCLIC, amplitudes: [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06], cycles: [2] },
+  named: { ...CYCLIC, protocol: "aci_374_1", largest: 0.06 },
+  synthetic: { ...GROUND, file: "synthetic 1" },
+  record: { ...GROUND, file: "" },
 };
 
-export function valueAt(object, path) {
-  return path.split(".").reduce((part, name) => (part ?? {})[name], object);
+export function kindOfLoading({ drive, file, protocol, amplitudes, values }) {
+  if (drive === "ground_acceleration") return file?.startsWith("synthetic ") ? "synthetic" : "record";
+  return protocol ? "named" : amplitudes ? "amplitudes" : values && values.length <= 1 ? "push" : "path";
 }
+export const isShaken = groups => !isText(groups) && valuesOf(groups, "loading")?.drive === "ground_acceleration";
 
-export function putAt(object, path, value) {
-  const names = path.split("."), last = names.pop();
-  let part = object;
-  for (const name of names) part = part[name] ??= {};
-  if (value === null) delete part[last];
-  else part[last] = value;
+// What a field of the loading shows, also of those that stand for several keys; and what it does to the loading.
+export function loadingValue(loading, key) {
+  if (key === "kind") return kindOfLoading(loading);
+  if (key === "seed") return Number(loading.file?.split(" ")[1]);
+  return key === "scale" ? loading.scale ?? 1 : loading[key];
+}
+export function putLoading(groups, key, value) {
+  const loading = groupOf(groups, "loading");
+  if (key === "kind") {
+    if (value !== kindOfLoading(loading[1])) loading[1] = JSON.parse(JSON.stringify(LOADINGS[value] ?? loading[1]));
+    // A method that was for the loading before
+    groups.splice(0, groups.length, ...groups.filter(([name]) => name !== "analysis"));
+  } else if (key === "seed") loading[1].file = `synthetic ${value}`;
+  else putAt(groups, `loading.${key}`, value);
 }
 
 export function element(name, properties = {}, ...children) {
@@ -85,44 +114,36 @@ export function element(name, properties = {}, ...children) {
   return made;
 }
 
-const FIELD = Object.fromEntries([...COLUMN_FIELDS.flatMap(({ fields }) => fields), ...LOADING_FIELDS].map(field => [field.path, field]));
-
-export const toldOf = (fault, state, column, system) => toldAs(fault, FIELD[fault.field], valueAt(fault.field.startsWith("loading.") ? state : column, fault.field), system);
+// Fields by the names of their groups and keys; of several the first.
+export const fieldsOf = fields => Object.fromEntries(fields.toReversed().map(field => [namedPath([], field.path), field]));
 
 // A message of the program as the page says it: with the label and the unit of its field; an empty field says what it lacks.
-export function toldAs(fault, field, value, system) {
+export function toldAs(fault, known, groups, system) {
+  const path = namedPath(groups, fault.field), field = known[path], value = fault.field && valueAt(groups, fault.field);
   if (!field) return inUnits(fault.text, system);
-  const name = field.path.split(".").at(-1);
   const label = field.label.split(",")[0], [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
-  if (!field.optional && !field.choices && (value === undefined || value === null || value.length === 0))
-    return `${label}: give ${field.whole ? "a whole number" : unit ? `a value in ${unit}` : "a number"}`;
-  return inUnits(fault.text, system, field.dimension).replace(new RegExp(`^(?:[a-z ]+: )?${name} = `), `${label} = `);
+  if (!field.optional && !field.choices && (value === undefined || value === null || value === "" || value.length === 0))
+    return `${label}: give ${field.whole ? "a whole number" : unit ? `a value in ${unit}` : field.text ? "a name" : "a number"}`;
+  return inUnits(fault.text, system, field.dimension).replace(new RegExp(`^(?:[a-z_ ]+(?:\\(\\d+\\))?: )?${path.split(".")[1]}(?:\\(\\d+\\))? = `), `${label} = `);
 }
 
-function shownValue(field, value, system) {
+export function shownValue(field, value, system) {
   const [, factor] = field.dimension ? unitOf(system, field.dimension) : ["", 1];
-  if (field.list) return Array.isArray(value) ? value.map(v => typed(v, factor)).join(", ") : String(value ?? "");
+  if (Array.isArray(value)) return value.map(v => typed(v, factor)).join(", ");
   return typed(value, factor);
 }
 
 function readValue(field, text, system) {
+  if (field.text) return text.trim() || null;
   const [, factor] = unitOf(system, field.dimension);
-  if (field.list) {
-    const words = text.split(/[\s;,]+/).filter(Boolean);
-    return words.map(word => parsed(word, factor)).filter(value => value !== null);
-  }
-  return parsed(text, factor, field.whole);
+  if (!field.list) return field.several && text.trim() ? [parsed(text, factor, field.whole)] : parsed(text, factor, field.whole);
+  return text.split(/[\s;,]+/).filter(Boolean).map(word => parsed(word, factor, field.whole)).filter(value => value !== null);
 }
 
-const idOf = path => "f-" + path.replaceAll(".", "-");
+const idOf = path => "f-" + path.replaceAll(/[.@]/g, "-");
 
-// One labelled field with its message; `edit(value, done)` is called while one types and when it is left.
-export function fieldRow(field, value, system, edit, fixed) {
-  const id = idOf(field.path), message = id + "-fault";
-  const row = element("div", { className: "row" });
-  row.dataset.path = field.path;
-  const [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
-  row.append(element("label", { htmlFor: id }, field.label));
+// The input of a field; `edit(value, done)` is called while one types and when it is left. `at` is the path that messages have.
+export function inputOf(field, value, system, edit, fixed, at = field.path, id = idOf(field.path)) {
   let input;
   if (field.choices) {
     input = element("select", { id, disabled: fixed });
@@ -130,13 +151,13 @@ export function fieldRow(field, value, system, edit, fixed) {
     input.addEventListener("change", () => edit(field.choices.find(([key]) => String(key) === input.value)[0], true));
   } else {
     const given = { id, value: shownValue(field, value, system), readOnly: fixed, spellcheck: false };
-    input = field.list ? element("textarea", { ...given, rows: 2 }) : element("input", { ...given, type: "text", inputMode: "decimal" });
+    input = field.list ? element("textarea", { ...given, rows: field.rows ?? 2 }) : element("input", { ...given, type: "text", inputMode: field.text ? "text" : "decimal" });
     input.placeholder = field.optional ?? "needed";
     input.addEventListener("input", () => edit(readValue(field, input.value, system), false));
     input.addEventListener("change", () => edit(readValue(field, input.value, system), true));
     input.addEventListener("keydown", event => {
       const way = { ArrowUp: 1, ArrowDown: -1, PageUp: 5, PageDown: -5 }[event.key];
-      const now = readValue(field, input.value, system);
+      const now = way && !field.text && readValue({ ...field, several: false }, input.value, system);
       if (!way || fixed || !(field.step || field.bar) || typeof now !== "number") return;
       event.preventDefault();
       const step = field.bar ? 0 : stepOf(system, field.dimension, field.step);
@@ -145,6 +166,15 @@ export function fieldRow(field, value, system, edit, fixed) {
       edit(readValue(field, input.value, system), false);
     });
   }
+  input.dataset.path = at;
+  return input;
+}
+
+// One labelled field with its message.
+export function fieldRow(field, value, system, edit, fixed, at = field.path) {
+  const id = idOf(field.path), message = id + "-fault", input = inputOf(field, value, system, edit, fixed, at);
+  const row = element("div", { className: "row" }, element("label", { htmlFor: id }, field.label));
+  const [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
   input.setAttribute("aria-describedby", message);
   const box = element("span", { className: "value" }, input);
   if (unit) {
@@ -155,68 +185,79 @@ export function fieldRow(field, value, system, edit, fixed) {
   return row;
 }
 
+// Groups of one name, one a row with a cell for each key, a button that removes it, and one that adds another.
+// A cell is a field, or { label, choices, get, set } for what stands for several keys; `act(change)` does what is done at once.
+export function listRows(name, cells, { groups, own = groups, system, edit, act, fixed, add, least = 0, fits = () => true, what = name }) {
+  const rows = own.filter(one => one[0] === name && fits(one[1])), made = [];
+  if (rows.length) made.push(element("div", { className: "heads" }, ...cells.map(cell => {
+    const [unit] = cell.dimension ? unitOf(system, cell.dimension) : [""];
+    return element("span", {}, cell.label + (unit ? `, ${unit}` : ""));
+  })));
+  rows.forEach((one, i) => {
+    const message = `f-${name}-${i + 1}-fault`, at = groups.indexOf(one);
+    const inputs = cells.map(cell => {
+      const id = `f-${name}-${i + 1}-${cell.key}`, value = cell.get ? cell.get(one[1]) : one[1][cell.key];
+      const take = cell.set ? chosen => act(() => cell.set(one[1], chosen)) : (given, done) => edit(`${at}.${cell.key}`, given, done);
+      const input = inputOf(cell, value, system, take, fixed, `${at}.${cell.key}`, id);
+      input.ariaLabel = `${cell.label} of ${what} ${i + 1}`;
+      input.setAttribute("aria-describedby", message);
+      return input;
+    });
+    const gone = element("button", { type: "button", className: "gone", ariaLabel: `Remove ${what} ${i + 1}`, title: "Remove", disabled: fixed || rows.length <= least, onclick: () => act(() => groups.splice(groups.indexOf(one), 1)) }, "×");
+    made.push(element("div", { className: "row cells" }, ...inputs, gone, element("p", { className: "fault", id: message, hidden: true })));
+  });
+  if (!fixed && add) made.push(element("button", { type: "button", className: "add", id: `add-${name}`, onclick: () => act(() => {
+    const last = rows.at(-1) ?? own.findLast(one => one[0] === name) ?? own.at(-1);
+    groups.splice(groups.indexOf(last) + 1, 0, [name, add(rows.at(-1)?.[1])]);
+  }) }, `Add ${what}`));
+  for (const row of made) row.style?.setProperty("--cells", cells.length);
+  return made;
+}
+
 // Fields under a title; none without fields.
 export function fieldGroup(title, rows) {
   return rows.length ? [element("fieldset", {}, element("legend", {}, title), ...rows)] : [];
 }
 
-// The fields of a loading, with the button that opens a record.
-export function loadingRows(loading, system, edit, fixed, fields = LOADING_FIELDS) {
+// The fields of a loading, with the button that opens a record. `edit(path, value, done)`.
+export function loadingRows(groups, system, edit, fixed, fields = LOADING_FIELDS) {
+  const loading = valuesOf(groups, "loading") ?? {}, kind = kindOfLoading(loading);
   const rows = fields
-    .filter(field => !field.kinds || field.kinds.includes(loading.kind))
-    .map(field => fieldRow(field, valueAt({ loading }, field.path), system, (value, done) => edit(field.path, value, done), fixed));
-  if (loading.kind === "record") {
-    const button = element("button", { type: "button", disabled: fixed, id: "f-loading-record" }, loading.name || "Open a record…");
+    .filter(field => !field.kinds || field.kinds.includes(kind))
+    .map(field => {
+      const own = kind === "path" && field.path === "loading.kind" ? { ...field, choices: [["path", `path of ${loading.values?.length ?? 0} points`], ...field.choices] } : field;
+      return fieldRow(own, loadingValue(loading, parts(field.path)[1]), system, (value, done) => edit(field.path, value, done), fixed, placeOf(groups, field.path));
+    });
+  if (kind === "record") {
+    const button = element("button", { type: "button", disabled: fixed, id: "f-loading-file" }, loading.file?.split("#")[0] || "Open a record…");
     button.addEventListener("click", () => document.getElementById("recordfile").click());
-    button.setAttribute("aria-describedby", "f-loading-record-fault f-loading-record-hint");
-    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-record-fault", hidden: true }),
-      element("p", { className: "hint", id: "f-loading-record-hint" }, "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2)."));
-    row.dataset.path = "loading.record";
+    button.setAttribute("aria-describedby", "f-loading-file-fault f-loading-file-hint");
+    button.dataset.path = placeOf(groups, "loading.file");
+    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-file-fault", hidden: true }),
+      element("p", { className: "hint", id: "f-loading-file-hint" }, "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2)."));
     rows.splice(1, 0, row);
   }
   return rows;
 }
 
-// The form of a column and the loading. `edit(path, value, done)`.
-export function drawForm(form, state, active, system, edit, fixed = false) {
-  const column = state.columns[active], parts = [];
-  const motion = ["synthetic", "record"].includes(state.loading.kind);
-  if ("case" in column) {
-    const text = element("textarea", { id: "f-case", value: column.case, rows: 14, spellcheck: false, readOnly: fixed });
-    text.setAttribute("aria-describedby", "f-case-fault");
-    text.addEventListener("input", () => edit("case", text.value, false));
-    text.addEventListener("change", () => edit("case", text.value, true));
-    const row = element("div", { className: "row wide" }, element("label", { htmlFor: "f-case" }, "Case file"), text, element("p", { className: "fault", id: "f-case-fault", hidden: true }));
-    row.dataset.path = "case";
-    parts.push(...fieldGroup("Column and loading of a case file", [row]));
-  } else {
-    const shape = valueAt(column, "section.shape"), footing = valueAt(column, "footing.kind") === "springs";
-    for (const { group, fields } of COLUMN_FIELDS) {
-      parts.push(...fieldGroup(group, fields
-        .filter(field => (!field.shapes || field.shapes.includes(shape)) && (!field.motion || motion) && (!field.footing || footing))
-        .map(field => fieldRow(field, valueAt(column, field.path), system, (value, done) => edit(field.path, value, done), fixed))));
-    }
-  }
-  if (!state.columns.every(one => "case" in one))
-    parts.push(...fieldGroup(state.columns.length > 1 ? "Loading of both columns" : "Loading", loadingRows(state.loading, system, edit, fixed)));
-  form.replaceChildren(...parts);
-}
-
 // Put the messages beside their fields; what has no field is returned.
 export function showFaults(form, faults) {
-  const left = [];
+  const shown = new Set();
   for (const row of form.querySelectorAll(".row")) {
-    const mine = faults.filter(fault => fault.field === row.dataset.path);
-    const place = row.querySelector(".fault"), input = row.querySelector("input, select, textarea, button");
-    const text = [...new Set(mine.map(fault => fault.text))].join("\n");
+    const place = row.querySelector(".fault"), texts = [];
+    for (const input of row.querySelectorAll("[data-path]")) {
+      const mine = faults.filter(fault => fault.field === input.dataset.path);
+      shown.add(input.dataset.path);
+      texts.push(...mine.map(fault => fault.told ?? fault.text));
+      if (mine.length) input.setAttribute("aria-invalid", "true");
+      else input.removeAttribute("aria-invalid");
+    }
+    if (!place) continue;
+    const text = [...new Set(texts)].join("\n");
     if (place.textContent !== text) place.textContent = text;
     place.hidden = !text;
-    if (text) input.setAttribute("aria-invalid", "true");
-    else input.removeAttribute("aria-invalid");
   }
-  const shown = new Set([...form.querySelectorAll(".row")].map(row => row.dataset.path));
-  for (const fault of faults) if (!shown.has(fault.field)) left.push(fault.text);
-  return left;
+  return faults.filter(fault => !shown.has(fault.field)).map(fault => (fault.of ? `${fault.of}: ` : "") + (fault.told ?? fault.text));
 }
 
 // The values of fields anew, except of the one that is being typed in.

@@ -1,170 +1,261 @@
-// The view of a frame: storeys and bays of drawn members, pushed, moved to and fro, or shaken.
+// The view of a frame: a building drawn by its sections, pushed, moved to and fro, or shaken.
 
 import { inUnits, shown, unitOf } from "./units.js";
 import { drawChart, svgElement } from "./chart.js";
 import { drawSection } from "./drawing.js";
-import { COLUMN_FIELDS, LOADINGS, LOADING_FIELDS, element, fieldGroup, fieldRow, loadingRows, putAt, refreshFields, showFaults, toldAs, valueAt } from "./fields.js";
+import { LOADING_FIELDS, drawingsOf, element, fieldGroup, fieldRow, fieldsOf, groupOf, listRows, loadingRows, loadingValue, placeOf, putAt, putLoading, refreshFields, showFaults, toldAs, valuesOf } from "./fields.js";
+import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue } from "./section.js";
 import { table, timeChart } from "./panels.js";
 import { beside, changed, copied, edit, get, keyOf, page, say, showNotes, showStatus } from "./machine.js";
 
-const lengths = { dimension: "length", list: true }, count = { dimension: "number", whole: true, step: 1 };
 const GRID = [
-  { path: "frame.storeys", label: "Heights of the storeys, from the ground", ...lengths },
-  { path: "frame.bays", label: "Widths of the bays", ...lengths },
+  { path: "frame.storeys", label: "Heights of the storeys, from the ground", dimension: "length", list: true },
+  { path: "frame.bays", label: "Widths of the bays", dimension: "length", list: true },
+  { path: "frame.base", label: "Base of the columns", choices: [["fixed", "fixed"], ["pinned", "pinned"]] },
 ];
-const MATERIALS = [
-  { path: "frame.concrete.fc", label: "Concrete strength", dimension: "stress", step: 1e6 },
-  { path: "frame.bars.fy", label: "Yield stress of bars", dimension: "stress", step: 1e7 },
-  { path: "frame.ties.fy", label: "Yield stress of hoops", dimension: "stress", step: 1e7 },
-];
-const SHARED = ["concrete.fc", "bars.fy", "bars.fu", "ties.fy", "ties.fu"];
-const DRAWN = COLUMN_FIELDS.slice(0, 3).flatMap(({ fields }) => fields).filter(({ path }) => !SHARED.includes(path))
-  .map(field => ({ ...field, label: (({ bars: "Bars: ", ties: "Ties: " })[field.path.split(".")[0]] ?? "") + field.label }));
-const named = what => field => ({ ...field, path: `${what}.${field.path}` });
-const row = (side, label) => [{ path: `${side}.number`, label: `Bars ${label}`, ...count }, { path: `${side}.diameter`, label: `Their diameter`, dimension: "length", bar: true }];
-const COLUMN = DRAWN.map(named("column"));
-const BEAM = [...DRAWN.filter(({ path }) => ["section.width", "section.depth", "section.cover"].includes(path)),
-  { path: "section.slab", label: "Thickness of the slab", dimension: "length", step: 0.01, optional: "no slab" },
-  { path: "section.flange", label: "Effective width of the slab", dimension: "length", step: 0.05, slab: true },
-  ...row("top", "above"), ...row("bottom", "below"), ...DRAWN.filter(({ path }) => ["ties.diameter", "ties.spacing", "ties.legs"].includes(path))].map(named("beam")).map(({ shapes, ...field }) => field);
 const LOADS = [
-  { path: "frame.dead_load", label: "Dead load on the beams", dimension: "line", step: 1e3 },
-  { path: "frame.live_load", label: "Live load on the beams", dimension: "line", step: 1e3 },
-  { path: "frame.live_share", label: "Share of the live load that acts", dimension: "share", step: 0.05 },
-  { path: "frame.self_weight", label: "Weight of the members", choices: [[true, "25 kN/m³"], [false, "in the dead load"]] },
-  { path: "frame.kinematics", label: "P-Delta", choices: [["pdelta", "on"], ["small", "off"]] },
-  { path: "frame.damping", label: "Damping of all modes", dimension: "share", step: 0.01 },
+  { path: "frame.live_share", label: "Share of the live load that acts", dimension: "share", step: 0.05, optional: "30" },
+  { path: "frame.self_weight", label: "Weight of the members", choices: [[false, "in the dead load"], [true, "25 kN/m³"]] },
+  { path: "frame.mass", label: "Masses of the floors", choices: [["of_floors", "as given"], ["from_loads", "of the loads"]] },
+  { path: "frame.kinematics", label: "P-Delta", choices: [["small", "off"], ["pdelta", "on"]] },
+  { path: "damping.modal", label: "Damping of all modes", dimension: "share", step: 0.01, several: true, optional: "none" },
 ];
 const DEMAND = [
-  { path: "frame.demand.code", label: "Code", choices: [["en_1998_3", "EN 1998"], ["asce_41", "ASCE 41-17"]] },
-  { path: "frame.demand.ag", label: "Acceleration on rock, in g", dimension: "ratio", step: 0.05, code: "en_1998_3" },
-  { path: "frame.demand.soil", label: "Ground", choices: ["A", "B", "C", "D", "E"].map(soil => [soil, soil]), code: "en_1998_3" },
-  { path: "frame.demand.s_xs", label: "S_XS, in g", dimension: "ratio", step: 0.05, code: "asce_41" },
-  { path: "frame.demand.s_x1", label: "S_X1, in g", dimension: "ratio", step: 0.05, code: "asce_41" },
+  { path: "target.spectrum", label: "Spectrum", choices: [["en_1998", "EN 1998"], ["asce_41", "ASCE 41-17"]] },
+  { path: "target.ag", label: "Acceleration on rock, in g", dimension: "ratio", step: 0.05, spectrum: "en_1998" },
+  { path: "target.soil", label: "Ground", choices: ["A", "B", "C", "D", "E"].map(soil => [soil, soil]), spectrum: "en_1998" },
+  { path: "target.s_xs", label: "S_XS, in g", dimension: "ratio", step: 0.05, spectrum: "asce_41" },
+  { path: "target.s_x1", label: "S_X1, in g", dimension: "ratio", step: 0.05, spectrum: "asce_41" },
+  { path: "target.method", label: "Target displacement by", choices: [["en_1998", "N2 of EN 1998-1"], ["asce_41", "coefficients, ASCE 41-17"], ["capacity_spectrum", "capacity spectrum"]] },
+  { path: "assess.code", label: "Limits of members by", choices: [["en_1998_3", "EN 1998-3"], ["asce_41", "ASCE 41-17"]] },
+  { path: "assess.level", label: "Level to be kept", choices: [] },
 ];
+const LEVELS = { en_1998_3: ["DL", "SD", "NC"], asce_41: ["IO", "LS", "CP"] };
+const SPECTRA = { en_1998: { ag: 0.25, soil: "C" }, asce_41: { s_xs: 1.0, s_x1: 0.6 } };
 const [KIND, ...REST] = LOADING_FIELDS;
-const LOADING = [{ ...KIND, choices: [["push", "push to one side"], ...KIND.choices] }, { path: "loading.drift", label: "Roof drift of the push", dimension: "drift", step: 0.005, kinds: ["push"] }, ...REST];
-const FIELDS = Object.fromEntries([GRID, MATERIALS, COLUMN, BEAM, LOADS, DEMAND, LOADING].flat().map(field => [field.path, field]));
-// Hinges by the furthest that they have reached, and ends by the levels of the code that they have passed.
+const LOADING = [{ ...KIND, choices: [["push", "push to one side"], ...KIND.choices] }, ...REST];
+const PATTERN = { path: "frame.pattern", label: "Lateral load as", choices: [["triangular", "mass times height"], ["uniform", "mass"], ["modal", "first mode"]] };
+const NAME = { path: "drawing.name", label: "Name", text: true };
+const FRAME_SHAPES = ["rectangle", "tee", "wall", "circle", "hollow_rectangle", "hollow_circle"];
+// Lists of groups by their names; a place is a line, a bay, a storey or a floor.
+const load = (key, label, dimension, step) => ({ key, label, dimension, step, optional: "0" });
+const INFILL = [
+  { key: "name", label: "name", text: true }, { key: "thickness", label: "thick", dimension: "length", step: 0.01 }, { key: "fm", label: "f_m", dimension: "stress", step: 1e6 },
+  { ...load("opening_length", "opening", "length", 0.1), optional: "–" }, { ...load("opening_height", "its height", "length", 0.1), optional: "–" },
+];
+const PLACED = fieldsOf(["line", "bay", "storey", "floor", "kind", "kind_to", "lines", "bays"].flatMap(key => ["column_of", "beam_of", "infill_of", "node_load", "floor"].map(name => ({ path: `${name}.${key}`, label: key, choices: [] }))));
+const FIELDS = [GRID, LOADS, DEMAND, [PATTERN, NAME], LOADING, SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path)].flat();
+const KNOWN = { ...PLACED, ...fieldsOf([...FIELDS, ...SECTION_KEYS, ...INFILL.map(cell => ({ ...cell, path: `infill.${cell.key}` })),
+  { path: "floor.dead_load", label: "Dead load", dimension: "line" }, { path: "floor.live_load", label: "Live load", dimension: "line" }, { path: "node_load.load", label: "Load", dimension: "force" }]) };
+// Hinges by the furthest that they have reached, and ends by the levels of the code that they exceed.
 const STATES = [["cracking", "cracked", "cracked"], ["yield", "yielded", "yielded"], ["cap", "beyond", "failed or beyond their cap"], ["shear_failure", "beyond"], ["lost", "beyond"]];
-const PASSED = ["within", "yielded", "far", "beyond"];
+const EXCEEDED = ["within", "yielded", "far", "beyond"];
 
-// The storey whose members are shown, or 0 for all; the member that was chosen; whether levels are shown.
-let storey = 0, chosen = "", byLevels = false, timer = null, scales = {}, timeFigure = null;
+// The name of the drawing that is shown, "" for the building; the member that was chosen; whether levels are shown.
+let shownDrawing = "", chosen = "", byLevels = false, timer = null, scales = {}, timeFigure = null;
 
 const answer = () => frameView.stood.loops?.frame;
 const checks = () => beside("checks", frameView);
+const groups = () => frameView.state.cases[0];
+const drawings = () => drawingsOf(groups()).map(own => [own[0][1].name ?? "", own]);
+const own = () => drawings().find(([name]) => name === shownDrawing)?.[1] ?? groups();
 
 export const frameView = {
   name: "frame", label: "frames", scrubs: "building",
   titles: { draw: "Sections", loops: "Base shear and roof drift", states: "Limit states of members", timepanel: "Storey drifts in time" },
   panels: { loops: ["building", "loops", "summary", "storeys", "states", "history"], checks: ["members"] },
   accepts: found => Boolean(found.frame.displacement),
-  isState: ({ frame }) => frame && Array.isArray(frame.bays) && Array.isArray(frame.storeys) && frame.storeys.length > 0 && frame.storeys.every(one => one && typeof one === "object"),
-  tidied: ({ frame, loading }) => ({ frame: { ...frame, removed: Array.isArray(frame.removed) ? frame.removed.map(String) : [] }, loading }),
-  settle() { if (storey > frameView.state.frame.storeys.length) storey = 0; },
+  settle() { if (!drawings().some(([name]) => name === shownDrawing)) shownDrawing = ""; },
   begin() { frameView.settle(); },
   put, complete, showDrawings, showForm, showMessages, showPoint: () => { byLevels = false; showPoint(); },
   showLoops: showResponse, showStatus: showState,
-  refresh() { refreshFields(get("form"), Object.values(FIELDS), valueOf, page.system); },
+  refresh() { refreshFields(get("form"), FIELDS, valueOf, page.system); },
   resized: showResponse,
   showAll() { showForm(); showDrawings(); showResponse(); showMessages(); },
 };
 
 export const frameLanes = [{ lane: "checks", delay: 60, show: showChecks }];
 
+// ---- the grid --------------------------------------------------------------------------------------
+
+const sizes = key => { const found = valuesOf(groups(), "frame")[key]; return Array.isArray(found) ? found : [found ?? 0]; };
+
+// Whether a group of a grid is of a place, and which of those that are so comes last: it counts.
+function fits({ storey = 0, ...values }, key, at, level, lines) {
+  const word = values[`${key}s`] ?? "all", number = values[key] ?? 0, outer = at === 1 || at === lines;
+  return (storey === 0 || storey === level) && (word === "all" ? number === 0 || number === at : (word === "outer") === outer);
+}
+const isNone = one => one[1].kind === "none";
+
+function placesOf(name) {
+  const [what, at, level] = name.split("-"), column = what === "C", group = column ? "column_of" : "beam_of", key = column ? "line" : "bay";
+  const lines = sizes("bays").length + (column ? 1 : 0), found = groups().filter(([own, values]) => own === group && fits(values, key, Number(at), Number(level), lines));
+  return { group, key, at: Number(at), level: Number(level), found };
+}
+const drawingOf = name => /^[CB]-/.test(name) ? placesOf(name).found.at(-1)?.[1].kind ?? "" : "";
+
+function removedMembers() {
+  const names = [], bays = sizes("bays").length;
+  sizes("storeys").forEach((_, k) => {
+    for (let i = 1; i <= bays + 1; i++) names.push(`C-${i}-${k + 1}`);
+    for (let i = 1; i <= bays; i++) names.push(`B-${i}-${k + 1}`);
+  });
+  return names.filter(name => drawingOf(name) === "none");
+}
+
+function remove(name) {
+  const { group, key, at, level, found } = placesOf(name), last = found.at(-1), all = groups();
+  const after = one => all.splice((all.findLastIndex(([own]) => own === group) + 1) || 1, 0, one);
+  chosen = name;
+  if (!last || !isNone(last)) after([group, { [key]: at, storey: level, kind: "none" }]);
+  else if (last[1][key] === at && last[1].storey === level) all.splice(all.indexOf(last), 1);
+  else after([group, { [key]: at, storey: level, kind: found.findLast(one => !isNone(one))?.[1].kind ?? drawings()[0]?.[0] }]);
+  changed(true);
+}
+
 // ---- the form --------------------------------------------------------------------------------------
 
-const storeys = () => storey ? [frameView.state.frame.storeys[storey - 1]] : frameView.state.frame.storeys;
-const isOfMember = path => /^(column|beam)\./.test(path);
-
-// What a field shows: of a member that of the chosen storey, or of all where they are alike.
 function valueOf(path) {
-  if (path === "frame.storeys") return frameView.state.frame.storeys.map(one => one.height);
-  if (!isOfMember(path)) return valueAt(frameView.state, path);
-  const values = storeys().map(one => valueAt(one, path));
-  return values.every(value => value === values[0]) ? values[0] : null;
+  if (path.startsWith("loading.")) return loadingValue(valuesOf(groups(), "loading") ?? {}, path.slice(8));
+  return sectionValue(own(), path);
 }
 
 function put(path, value) {
-  const { frame } = frameView.state;
-  if (path === "frame.storeys") {
-    const last = frame.storeys.at(-1);
-    // Without a height the members of a storey stay for the next one.
-    frame.storeys = (value.length ? value : [null]).map((height, i) => ({ ...copied(frame.storeys[i] ?? last), height }));
-    frameView.settle();
-    showTabs();
-  } else if (isOfMember(path)) for (const one of storeys()) putAt(one, path, value);
-  else putAt(frameView.state, path, value);
+  const all = groups();
+  if (path.startsWith("loading.")) {
+    putLoading(all, path.slice(8), value);
+    if (path === "loading.kind" && value === "push") putAt(all, "loading.values", [Number((0.03 * sizes("storeys").reduce((sum, one) => sum + (Number(one) || 0), 0)).toPrecision(3))]);
+  } else if (path === "drawing.name") rename(value);
+  else if (path === "target.spectrum") {
+    if (!groupOf(all, "target")) all.push(["target", { method: value }]);
+    const target = valuesOf(all, "target"), { method } = target;
+    for (const key of Object.keys(target)) delete target[key];
+    Object.assign(target, { method, spectrum: value }, SPECTRA[value]);
+  } else {
+    if (path === "assess.code") putAt(all, "assess.level", null);
+    if (!shownDrawing || !completeSection(all, own(), path, value)) putAt(all, path, value, own());
+  }
+  frameView.settle();
 }
 
-function complete(path, done) {
-  if (path === "loading.kind") {
-    const { kind } = frameView.state.loading;
-    frameView.state.loading = kind === "push" ? { kind, drift: 0.03 } : copied(LOADINGS[kind]);
-    return true;
-  }
-  if (path === "column.section.shape") for (const { column: { section } } of storeys()) {
-    const size = section.width ?? section.diameter ?? 0.4;
-    if (section.shape.includes("circle")) section.diameter ??= size;
-    else { section.width ??= size; section.depth ??= size; }
-    if (section.shape.startsWith("hollow")) section.wall ??= Number((0.25 * size).toPrecision(3));
-  }
-  if (path === "beam.section.slab" && done) for (const { beam: { section } } of storeys()) section.flange ??= Number((3 * (section.width || 0.3)).toPrecision(3));
-  return path === "frame.demand.code" || path === "column.section.shape" || (path === "beam.section.slab" && done);
+function complete(path) {
+  return ["loading.kind", "target.spectrum", "assess.code", "section.shape", "bars.kind"].includes(path);
+}
+
+// Whatever is of a drawing goes with its name.
+function rename(value) {
+  const before = shownDrawing, [drawing] = own();
+  if (!value || drawings().some(([name]) => name === value)) return;
+  drawing[1].name = value;
+  for (const [, values] of groups()) for (const key of ["kind", "kind_to", "panel_hoops"]) if (values[key] === before) values[key] = value;
+  shownDrawing = value;
+}
+
+// A section like the one that is shown, or the last.
+function addDrawing() {
+  const all = groups(), names = drawings().map(([name]) => name), from = shownDrawing ? own() : drawings().at(-1)?.[1];
+  if (!from) return;
+  const stem = from[0][1].name.replace(/\d+$/, "") || "S";
+  let number = 1;
+  while (names.includes(stem + number)) number++;
+  const made = copied(from);
+  made[0][1].name = stem + number;
+  all.splice(all.indexOf(drawings().at(-1)[1].at(-1)) + 1, 0, ...made);
+  shownDrawing = stem + number;
+  chosen = "";
+  changed(true);
+}
+
+// A drawing that no member has any more.
+function dropDrawing() {
+  const gone = own(), all = groups();
+  const left = all.filter(one => !gone.includes(one) && one[1].kind !== shownDrawing && one[1].kind_to !== shownDrawing);
+  shownDrawing = "";
+  all.splice(0, all.length, ...left);
+  changed(true);
 }
 
 function showTabs() {
-  const host = get("tabs"), names = ["all storeys", ...frameView.state.frame.storeys.map((_, i) => `storey ${i + 1}`)];
-  host.ariaLabel = "Storeys";
+  const host = get("tabs"), names = ["building", ...drawings().map(([name]) => name)];
+  host.ariaLabel = "Building and its sections";
   host.replaceChildren(...names.map((name, i) => {
-    const tab = element("button", { type: "button", className: "tab a", onclick: () => { choose(i); host.children[i].focus(); } }, name);
-    tab.setAttribute("aria-pressed", String(i === storey));
+    const tab = element("button", { type: "button", className: "tab a", onclick: () => { choose(i ? name : ""); host.children[i].focus(); } }, name);
+    tab.setAttribute("aria-pressed", String(i ? name === shownDrawing : !shownDrawing));
     return tab;
-  }));
+  }), element("button", { type: "button", id: "add-section", disabled: !drawings().length, onclick: addDrawing }, "Add a section"));
+  if (shownDrawing) host.append(element("button", { type: "button", id: "drop-section", disabled: drawings().length < 2, onclick: dropDrawing }, `Remove ${shownDrawing}`));
 }
 
-function choose(level, member = "") {
-  storey = level;
+function choose(name, member = "") {
+  shownDrawing = name;
   chosen = member;
+  frameView.settle();
   showForm();
   showDrawings();
   showPoint();
 }
 
+const act = change => { change(); changed(true); };
+
+// Cells of the rules that say where what is: a line or bay, a storey, and what is there.
+function placeCells(key, kinds, level = "storey") {
+  const count = sizes("bays").length + (key === "line" ? 1 : 0), numbers = Array.from({ length: count }, (_, i) => [String(i + 1), String(i + 1)]);
+  const word = `${key}s`;
+  return [
+    { key, label: key, choices: [["0", "all"], ["outer", "outer"], ["inner", "inner"], ...numbers],
+      get: values => ["outer", "inner"].includes(values[word]) ? values[word] : String(values[key] ?? 0),
+      set: (values, chosenPlace) => { delete values[word]; delete values[key]; if (/\d/.test(chosenPlace)) { if (chosenPlace !== "0") values[key] = Number(chosenPlace); } else values[word] = chosenPlace; } },
+    levelCell(level),
+    ...(kinds ? [{ key: "kind", label: "is", choices: [...kinds.map(kind => [kind, kind]), ["none", "none"]] }] : []),
+  ];
+}
+
+function levelCell(level) {
+  return { key: level, label: level, choices: [["0", "all"], ...sizes("storeys").map((_, i) => [String(i + 1), String(i + 1)])], get: values => String(values[level] ?? 0),
+    set: (values, number) => { delete values[level]; if (number !== "0") values[level] = Number(number); } };
+}
+
 function showForm() {
-  const { frame, loading } = frameView.state, { system } = page;
-  const rows = (fields, fits = () => true) => fields.filter(fits).map(field => {
-    const differs = valueOf(field.path) === null && isOfMember(field.path) && !storey;
-    return fieldRow(differs ? { ...field, optional: "differs" } : field, valueOf(field.path), system, (value, done) => edit(field.path, value, done), false);
-  });
-  const shape = valueOf("column.section.shape"), slab = storeys().some(one => one.beam?.section?.slab !== undefined);
+  const all = groups(), { system } = page, about = { groups: all, system, edit, act, fixed: false };
+  const rows = (fields, is = () => true) => fields.filter(is).map(field => fieldRow(field, valueOf(field.path), system, (value, done) => edit(field.path, value, done), false, placeOf(all, field.path, own())));
   showTabs();
+  if (shownDrawing) {
+    get("form").replaceChildren(...fieldGroup("Section of members", rows([NAME])), ...sectionRows(all, own(), { system, edit, act, fixed: false, shapes: FRAME_SHAPES }));
+    showMessages();
+    return;
+  }
+  const kinds = drawings().map(([name]) => name), infills = all.filter(([name]) => name === "infill").map(one => one[1].name), { spectrum } = valuesOf(all, "target") ?? {}, code = valuesOf(all, "assess")?.code ?? "en_1998_3";
+  const list = (name, cells, more) => listRows(name, cells, { ...about, ...more });
+  const levels = LEVELS[code].map(level => [level, level]).reverse();
   get("form").replaceChildren(...[
     ["Grid", rows(GRID)],
-    ["Columns", rows(COLUMN, field => !field.shapes || field.shapes.includes(shape))],
-    ["Beams", rows(BEAM, field => !field.slab || slab)],
-    ["Materials", rows(MATERIALS)],
-    ["Loads", rows(LOADS)],
-    ["Loading", loadingRows(loading, system, edit, false, LOADING)],
-    ["Demand and acceptance", rows(DEMAND, field => !field.code || field.code === frame.demand?.code)],
+    ["Columns and walls, the last that fits counts", list("column_of", placeCells("line", kinds), { what: "columns", least: 1, add: () => ({ lines: "outer", kind: kinds[0] }) })],
+    ["Beams, the last that fits counts", list("beam_of", placeCells("bay", kinds), { what: "beams", add: () => ({ kind: kinds.at(-1) }) })],
+    ["Loads on beams of floors", list("floor", [levelCell("floor"), load("dead_load", "dead", "line", 1e3), load("live_load", "live", "line", 1e3), load("mass", "mass", "mass", 1e3)], { what: "floor loads", add: last => ({ ...last, floor: 1 }) })],
+    ["Loads on nodes, as of facades", list("node_load", [...placeCells("line", null, "floor"), { key: "load", label: "weight", dimension: "force", step: 1e3 }], { what: "node loads", add: () => ({ lines: "outer", load: 25e3 }) })],
+    ["Loads and masses", rows(LOADS)],
+    ["Masonry", [...list("infill", INFILL, { what: "masonry", add: last => ({ ...(last ?? { thickness: 0.2, fm: 3e6 }), name: `I${infills.length + 1}` }) }),
+      ...(infills.length ? list("infill_of", placeCells("bay", infills), { what: "infills", add: () => ({ kind: infills.at(-1) }) }) : [])]],
+    ["Loading", [...loadingRows(all, system, edit, false, LOADING), ...rows([PATTERN])]],
+    ["Demand and acceptance", rows(DEMAND.map(field => field.path === "assess.level" ? { ...field, choices: levels } : field), field => !field.spectrum || field.spectrum === spectrum)],
   ].flatMap(([title, made]) => fieldGroup(title, made)));
   showMessages();
 }
 
+// The section of the tab; on that of the building all of them.
 function showDrawings() {
-  const host = get("drawings"), { state, latest } = frameView, at = Math.max(0, storey - 1), own = state.frame.storeys[at];
-  get("draw").hidden = false;
-  const focused = host.contains(document.activeElement) ? document.activeElement.dataset : null, column = focused && document.activeElement.closest("[data-column]")?.dataset.column;
-  ["column", "beam"].forEach((what, i) => {
+  const host = get("drawings"), { state, latest } = frameView, shownOnes = drawings().filter(([name]) => !shownDrawing || name === shownDrawing);
+  get("draw").hidden = !shownOnes.length;
+  const focused = host.contains(document.activeElement) ? document.activeElement : null, path = focused?.dataset.path, from = focused?.closest("[data-column]").dataset.column;
+  while (host.children.length > shownOnes.length) host.lastChild.remove();
+  shownOnes.forEach(([name, of], i) => {
     if (!host.children[i]) host.append(element("div", { className: "drawbox" }));
-    const box = host.children[i], figure = latest?.frame.sections[at]?.[i], drawing = { ...own[what], section: { shape: "beam", ...own[what]?.section } };
-    box.dataset.column = what;
-    scales[what] = drawSection(box, drawing, figure, { system: page.system, title: `${what}${storey ? ` of storey ${storey}` : ""}`, kind: "a", stale: latest?.key !== keyOf(state) || !figure, scale: page.dragging ? scales[what] : undefined,
-      move: (path, value, done) => edit(`${what}.${path}`, value, done, true), moved: (path, begins = false) => { page.dragging = begins; if (!begins) showDrawings(); } });
+    host.children[i].dataset.column = name;
+    const figure = latest?.frame.sections[name], drawing = { section: { ...valuesOf(of, "section") }, layout: valuesOf(of, "layout") };
+    scales[name] = drawSection(host.children[i], drawing, figure, { system: page.system, title: name, kind: "a", stale: latest?.key !== keyOf(state) || !figure, scale: page.dragging ? scales[name] : undefined,
+      move: (at, value, done) => { if (shownDrawing !== name) choose(name, chosen); edit(at, value, done, true); }, moved: (at, begins = false) => { page.dragging = begins; if (!begins) showDrawings(); } });
   });
-  while (host.children.length > 2) host.lastChild.remove();
-  if (column) host.querySelector(`[data-column="${column}"] [data-path="${focused.path}"]`)?.focus();
+  if (path) host.querySelector(`[data-column="${from}"] [data-path="${path}"]`)?.focus();
 }
 
 // ---- what is shown ---------------------------------------------------------------------------------
@@ -175,14 +266,12 @@ function showState() {
 }
 
 function showMessages() {
-  const { latest } = frameView, { system } = page;
-  const all = [...latest?.frame.faults ?? [], ...(latest?.frame.displacement ? checks()?.faults ?? [] : [])].map(fault => {
-    const field = FIELDS[fault.field], value = field && valueOf(fault.field);
-    return { field: fault.field, text: toldAs(fault, field, Array.isArray(value) ? value.filter(one => one !== null) : value, system) };
-  });
-  const notes = [latest?.frame.stopped, ...(latest?.frame.notes ?? [])].filter(Boolean).map(text => inUnits(text, system));
+  const { latest, state } = frameView, { system } = page, of = latest?.state.cases[0];
+  const all = [...latest?.frame.faults ?? [], ...(latest?.frame.displacement ? checks()?.faults ?? [] : [])].map(fault => ({ ...fault, told: toldAs(fault, KNOWN, of, system) }));
+  const notes = [...new Set([latest?.frame.stopped, ...(latest?.frame.notes ?? [])])].filter(Boolean).map(text => inUnits(text, system));
   showNotes(showFaults(get("form"), all), notes);
-  say([...new Set(all.map(fault => fault.text))].join("; "));
+  // What is half typed is not told.
+  if (latest?.key === keyOf(state)) say([...new Set(all.map(fault => fault.told))].join("; "));
 }
 
 function showResponse() {
@@ -199,8 +288,8 @@ function showResponse() {
 function showChecks() {
   const found = checks(), ends = (found?.ends ?? []).toSorted((a, b) => b.ratio - a.ratio);
   get("attarget").hidden = !found?.target?.reached;
-  const told = found && `${found.levels?.at(-1) ?? ""} of ${found.code === "asce_41" ? "ASCE 41-17" : "EN 1998-3"}, ${found.at_target ? "at the target displacement" : "largest of all rows"}${(found.notes ?? []).map(one => `. ${one}`).join("")}`;
-  get("membertable").replaceChildren(ends.length ? table(["Member", "end", "ratio", "levels passed", "by"], ends.slice(0, 12).map(one => ({ cells: [one.member, one.end, one.status === "evaluated" ? shown(one.ratio, 3) : "–", found.levels.slice(0, Math.max(0, one.passed)).join(", ") || "none", { text: one.status === "evaluated" ? one.governed_by : one.status }] })), told)
+  const told = found?.limits_of && `${found.limits_of}, ${found.accepted ? "accepted" : "not accepted"} at ${found.level}; ratios of ${found.levels.at(-1)}, ${found.at_target ? "at the target displacement" : "largest of all rows"}${(found.notes ?? []).map(one => `. ${one}`).join("")}`;
+  get("membertable").replaceChildren(ends.length ? table(["Member", "end", "ratio", "levels exceeded", "by"], ends.slice(0, 12).map(one => ({ cells: [one.member, one.end, one.status === "evaluated" ? shown(one.ratio, 3) : "–", found.levels.slice(0, Math.max(0, one.exceeded)).join(", ") || "none", { text: one.status === "evaluated" ? one.governed_by : one.status }] })), told)
     : element("p", { className: "empty" }, found ? "No member is judged." : "Computing"));
   showMessages();
   showPoint();
@@ -223,7 +312,7 @@ function showPoint() {
 
 // Forces of a member in the row that is shown, and its demand over its capacity.
 function tell(name) {
-  const found = answer(), i = found?.members.indexOf(name) ?? -1, removed = frameView.state.frame.removed.includes(name);
+  const found = answer(), i = found?.members.indexOf(name) ?? -1, removed = Boolean(name) && drawingOf(name) === "none";
   get("remove").disabled = !name;
   get("remove").textContent = removed ? `Put ${name} back` : name ? `Remove ${name}` : "Remove the member";
   if (i < 0) { get("told").textContent = removed ? `${name} is removed` : "A member under the pointer tells its forces; a click chooses it"; return; }
@@ -235,7 +324,7 @@ function tell(name) {
 // Hinges that were reached so far, or ends by the levels of the code: place and class.
 function hingesOf(found, row) {
   const reached = new Map(), words = new Map();
-  if (byLevels) for (const { member, end, passed } of checks()?.ends ?? []) reached.set(`${member} ${end}`, [member, end, PASSED[passed] ?? "unknown"]);
+  if (byLevels) for (const { member, end, exceeded } of checks()?.ends ?? []) reached.set(`${member} ${end}`, [member, end, EXCEEDED[exceeded] ?? "unknown"]);
   else for (const { member, end, name, time, group } of found.events) {
     const kind = STATES.findIndex(([state]) => state === name), key = `${member} ${end}`;
     if (time > found.time[row] || kind < 0 || kind < (words.get(key) ?? 0)) continue;
@@ -247,22 +336,22 @@ function hingesOf(found, row) {
 
 // The frame with its dead load, and the frame on its way with its hinges.
 function drawFrame(host, found, at) {
-  const { storeys: levels, bays, removed } = frameView.stood.loops.state.frame, row = found.pictures[at];
+  const { storeys: levels, bays } = valuesOf(frameView.stood.loops.state.cases[0], "frame"), removed = removedMembers().filter(name => !found.members.includes(name)), row = found.pictures[at];
   const wide = bays.reduce((sum, bay) => sum + bay, 0), high = found.height, width = Math.max(300, host.clientWidth);
   const [unit, factor] = unitOf(page.system, "length"), moved = found.moved[at];
   const ways = found.moved.flatMap(members => members.map(line => line.map(([x]) => x))).flat(), least = Math.min(0, ...bounded(ways, Math.min)), largest = Math.max(1e-12, ...bounded(ways, Math.max));
   // Room for the load at the left, for the displacements and the heights at the right.
   const times = Math.min(0.1 * Math.max(wide, high) / Math.max(largest, -least), 50), away = times * largest, before = -times * least;
   const scale = Math.min((width - 132) / (wide + away + before), 380 / high), left = 60 + before * scale + (width - 132 - (wide + away + before) * scale) / 2, top = 46, ground = top + high * scale;
-  const legend = byLevels ? ["within all", ...(checks()?.levels ?? []).map(level => `beyond ${level}`)].map((text, i) => [PASSED[i], text]) : STATES.slice(0, 3).map(([, kind, text]) => [kind, text]);
+  const legend = byLevels ? ["within all", ...(checks()?.levels ?? []).map(level => `exceed ${level}`)].map((text, i) => [EXCEEDED[i], text]) : STATES.slice(0, 3).map(([, kind, text]) => [kind, text]);
   const narrow = width < 460, height = ground + 50 + 16 * (narrow ? legend.length : 1);
   const put = ([x, y]) => [left + x * scale, ground - y * scale], place = (i, point, far = times) => put([0, 1].map(k => found.still[i][point][k] + far * moved[i][point][k]));
   const path = (i, far) => found.still[i].map((_, point) => (point ? "L" : "M") + place(i, point, far).map(value => value.toFixed(1)).join(" ")).join("");
   const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "chart frames", role: "group", "aria-label": `Frame of ${levels.length} storeys and ${bays.length} bays, displacements times ${shown(times, 2)}. Arrow keys go from member to member, Delete removes one.` });
   const focused = host.contains(document.activeElement) ? document.activeElement.dataset?.name : null;
-  const axes = bays.reduce((all, bay) => [...all, all.at(-1) + bay], [0]), floors = levels.reduce((all, one) => [...all, all.at(-1) + one.height], [0]);
+  const axes = bays.reduce((all, bay) => [...all, all.at(-1) + bay], [0]), floors = levels.reduce((all, one) => [...all, all.at(-1) + one], [0]);
   const member = (name, d, words, kind = "") => {
-    const line = svgElement("path", { class: `member${chosen === name || (storey && !chosen && levelOf(name) === storey) ? " chosen" : ""}${kind}`, d, role: "button", tabindex: name === (chosen || found.members[0]) ? 0 : -1, "data-name": name, "aria-label": words });
+    const line = svgElement("path", { class: `member${chosen === name || (shownDrawing && !chosen && drawingOf(name) === shownDrawing) ? " chosen" : ""}${kind}`, d, role: "button", tabindex: name === (chosen || found.members[0]) ? 0 : -1, "data-name": name, "aria-label": words });
     line.addEventListener("pointerenter", () => tell(name));
     line.addEventListener("pointerleave", () => tell(chosen));
     line.addEventListener("focus", () => tell(name));
@@ -276,7 +365,7 @@ function drawFrame(host, found, at) {
   }
   found.members.forEach((name, i) => {
     svg.append(svgElement("path", { class: "zero", d: path(i, 0) }));
-    member(name, path(i, times), `${name} of storey ${levelOf(name)}`);
+    member(name, path(i, times), `${name}, ${drawingOf(name) || "no section"}`);
     if (!name.startsWith("B")) return;
     const [[x0, y], [x1]] = [place(i, 0, 0), place(i, found.still[i].length - 1, 0)];
     let load = `M${x0} ${y - 14}H${x1}`;
@@ -287,7 +376,7 @@ function drawFrame(host, found, at) {
     svg.append(svgElement("path", { class: "thin", d: `M${left + x * scale} ${ground}m-11 0h22m-18 0l-4 5m9 -5l-4 5m9 -5l-4 5m9 -5l-4 5` }));
     if (i) svg.append(svgElement("text", { x: left + (x - bays[i - 1] / 2) * scale, y: ground + 19, "text-anchor": "middle" }, `${shown(bays[i - 1] / factor)} ${unit}`));
   });
-  levels.forEach(({ height: own }, i) => {
+  levels.forEach((own, i) => {
     svg.append(svgElement("text", { x: left + (wide + away) * scale + 12, y: ground - (floors[i] + own / 2) * scale }, `${shown(own / factor)} ${unit}`));
     const force = 12 + 34 * floors[i + 1] / high;
     if (at && !found.dynamic) svg.append(svgElement("path", { class: "arrow", d: `M${left - before * scale - 10 - force} ${ground - floors[i + 1] * scale}h${force}m-6 -3.5l6 3.5l-6 3.5` }));
@@ -303,13 +392,14 @@ function drawFrame(host, found, at) {
     const [x, y] = narrow ? [8, ground + 38 + 16 * i] : [8 + 140 * i, ground + 38];
     svg.append(svgElement("circle", { class: `hinge ${kind}`, cx: x + 4, cy: y, r: 4.2 }), svgElement("text", { x: x + 13, y: y + 4 }, words));
   });
-  svg.append(svgElement("text", { x: 4, y: height - 5 }, `Displacements × ${shown(times, 2)}${byLevels ? "; ends by the levels that they have passed" : ""}`));
+  svg.append(svgElement("text", { x: 4, y: height - 5 }, `Displacements × ${shown(times, 2)}${byLevels ? "; ends by the levels that they exceed" : ""}`));
   svg.addEventListener("keydown", event => keyed(event, found.members.concat(removed)));
   host.replaceChildren(svg);
   if (focused) svg.querySelector(`[data-name="${focused}"]`)?.focus();
 }
 
-const levelOf = name => Number(name.split("-")[2]);
+// A limit state with what reached it: flexure or shear.
+const stateOf = ({ group, name }) => ["member", ""].includes(group) || name.startsWith(group) ? name.replaceAll("_", " ") : `${group.replaceAll("_", " ")}: ${name.replaceAll("_", " ")}`;
 
 // Least or largest of many numbers, for which a call has no room.
 function bounded(values, of) {
@@ -317,7 +407,9 @@ function bounded(values, of) {
 }
 
 function pick(name) {
-  choose(chosen === name ? 0 : levelOf(name), chosen === name ? "" : name);
+  const found = drawingOf(name);
+  if (chosen === name) choose("");
+  else choose(drawings().some(([own]) => own === found) ? found : shownDrawing, name);
 }
 
 function keyed(event, names) {
@@ -328,13 +420,6 @@ function keyed(event, names) {
   else if (event.key === "Delete") remove(name);
   else return;
   event.preventDefault();
-}
-
-function remove(name) {
-  const { frame } = frameView.state;
-  frame.removed = frame.removed.includes(name) ? frame.removed.filter(one => one !== name) : [...frame.removed, name];
-  chosen = name;
-  changed(true);
 }
 
 function drawCurve(host, found, row) {
@@ -362,8 +447,8 @@ function showTables(found, row) {
   get("storeytable").replaceChildren(table(["Storey", "drift %", `shear ${unit}`, "largest %", `largest ${unit}`, ...(there ? ["at target %"] : [])], drift.map((value, i) =>
     ({ cells: [String(i + 1), shown(100 * value, 3), shown(shear[i] / factor), shown(100 * peak.storey_drift[i], 3), shown(peak.storey_shear[i] / factor), ...(there ? [shown(100 * there[i], 3)] : [])] })).reverse(), `At a roof drift of ${percent(found.displacement[row] / found.height)}`));
   const events = found.events.filter(event => event.name !== "cracking");
-  get("statetable").replaceChildren(events.length ? table(["Member", "section", "state", ...(found.dynamic ? ["time s"] : []), "roof drift %", `base shear ${unit}`], events.slice(0, 60).map(event => ({ kind: event.time <= found.time[row] ? "" : "later",
-    cells: [event.member, ["start", "end", ""].includes(event.end) ? event.end : shown(Number(event.end), 2), event.name, ...(found.dynamic ? [shown(event.time, 4)] : []), ...(event.dead ? ["dead load", "–"] : [shown(100 * event.drift, 3), shown(event.force / factor)])] })), events.length > 60 ? `${events.length - 60} more in the report` : "") : element("p", { className: "empty" }, "No section yields."));
+  get("statetable").replaceChildren(events.length ? table(["Member", "section", "limit state", ...(found.dynamic ? ["time s"] : []), "roof drift %", `base shear ${unit}`], events.slice(0, 60).map(event => ({ kind: event.time <= found.time[row] ? "" : "later",
+    cells: [event.member, ["start", "end", ""].includes(event.end) ? event.end : shown(Number(event.end), 2), stateOf(event), ...(found.dynamic ? [shown(event.time, 4)] : []), ...(event.dead ? ["dead load", "–"] : [shown(100 * event.drift, 3), shown(event.force / factor)])] })), events.length > 60 ? `${events.length - 60} more in the report` : "") : element("p", { className: "empty" }, "No section yields."));
 }
 
 // ---- what is done ----------------------------------------------------------------------------------
@@ -382,7 +467,7 @@ function play() {
   }, 90);
 }
 
-// The picture nearest to the target displacement, with the levels that each end has passed there.
+// The picture nearest to the target displacement, with the levels that each end exceeds there.
 function goToTarget() {
   const found = answer(), { signed } = checks().target, away = found.pictures.map(row => Math.abs(found.displacement[row] - signed));
   get("scrub").value = away.indexOf(Math.min(...away));

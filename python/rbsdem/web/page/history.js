@@ -41,11 +41,14 @@ function decoded(text) {
   return JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, letter => letter.charCodeAt(0))));
 }
 
-// The state and the units of a link, or null; it may come from anywhere, and the view of its kind says what it must have.
-export function unpacked(text, views) {
+const isGroup = one => Array.isArray(one) && one.length === 2 && typeof one[0] === "string" && one[1] && typeof one[1] === "object" && !Array.isArray(one[1]);
+export const isState = state => Array.isArray(state?.cases) && state.cases.length >= 1 && state.cases.length <= 2
+  && state.cases.every(one => typeof one === "string" || (Array.isArray(one) && one.every(isGroup)));
+
+// The state and the units of a link, or null; it may come from anywhere.
+export function unpacked(text) {
   try {
-    const value = decoded(text), view = views[value.state.frame ? "frame" : "columns"];
-    const right = value.state.loading && typeof value.state.loading === "object" && view.isState(value.state);
-    return right ? { ...value, state: view.tidied(value.state) } : null;
+    const value = decoded(text);
+    return isState(value.state) ? value : null;
   } catch { return null; }
 }

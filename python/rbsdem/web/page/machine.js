@@ -1,7 +1,7 @@
 // The state machine of the page: an input, the answers that stand, undo, link, open and save. A view draws one kind of input.
 
 import { SYSTEMS } from "./units.js";
-import { element, putAt, showFaults } from "./fields.js";
+import { element, groupOf, isText, putAt } from "./fields.js";
 import { addSaves, download, saveShown } from "./panels.js";
 import { makeHistory, packed, unpacked } from "./history.js";
 import { ask, makeLane } from "./answers.js";
@@ -125,7 +125,7 @@ function putLink() {
 }
 
 function kept(name) {
-  try { return unpacked(sessionStorage.getItem(name)?.slice(3) ?? "", page.views); } catch { return null; }
+  try { return unpacked(sessionStorage.getItem(name)?.slice(3) ?? ""); } catch { return null; }
 }
 
 // After a change of what there is, not only of a number.
@@ -150,11 +150,14 @@ function restore(found) {
   putLink();
 }
 
-function load(found, units, words = "") {
-  const view = page.views[found.frame ? "frame" : "columns"];
+// The view of a state: of columns, or of a frame.
+const viewOf = ({ cases: [one] }) => page.views[!isText(one) && groupOf(one, "frame") ? "frame" : "columns"];
+
+function load(found, units) {
+  const view = viewOf(found);
   view.state = found;
   view.settle();
-  page.note = words;
+  page.note = "";
   if (units && SYSTEMS[units]) page.system = units;
   get("units").value = page.system;
   if (view === page.view) changed(true);
@@ -206,15 +209,15 @@ async function openFile(file) {
   const answer = await ask("open", { text: await file.text() });
   if (!answer) return;
   if (answer.faults) { page.note = answer.faults.map(fault => `${file.name}: ${fault.text}`).join("; "); page.view.showMessages(); say(page.note); return; }
-  load(answer.state, null, answer.note ?? "");
+  load(answer.state, null);
 }
 
 async function openRecord(file) {
   if (file.size > 7e6) { page.note = `${file.name} is too large for a record.`; page.view.showMessages(); return; }
   const answer = await ask("record", { name: file.name, text: await file.text() });
   if (!answer) return;
-  if (answer.faults) { showFaults(get("form"), answer.faults); say(answer.faults[0].text); return; }
-  putAt(page.view.state, "loading", { ...page.view.state.loading, kind: "record", id: answer.id, name: answer.name });
+  if (answer.faults) { page.note = answer.faults[0].text; page.view.showMessages(); say(page.note); return; }
+  for (const one of page.view.state.cases) if (!isText(one)) putAt(one, "loading.file", answer.file);
   changed(true);
 }
 
@@ -260,7 +263,7 @@ export function setUp() {
     setTimeout(() => { get("link").textContent = "Copy link"; }, 2500);
   });
   window.addEventListener("hashchange", () => {
-    const found = unpacked(location.hash.slice(3), page.views);
+    const found = unpacked(location.hash.slice(3));
     if (found) load(found.state, found.units);
   });
 }
@@ -268,14 +271,13 @@ export function setUp() {
 export async function start() {
   const begin = await (await fetch("start")).json();
   page.withTests = begin.tests;
-  const linked = unpacked(location.hash.slice(3), page.views);
-  const own = linked?.state ?? begin.state ?? begin.columns, first = page.views[own.frame ? "frame" : "columns"];
+  const linked = unpacked(location.hash.slice(3));
+  const own = linked?.state ?? begin.state ?? begin.columns, first = viewOf(own);
   for (const view of Object.values(page.views)) {
     view.state = kept(view.name)?.state ?? begin[view.name];
-    if (view === first) view.state = view.tidied(own);
+    if (view === first) view.state = { cases: own.cases };
     view.past.begin(view.state);
   }
-  if (!linked) page.note = begin.state?.note ?? "";
   if (linked?.units && SYSTEMS[linked.units]) page.system = linked.units;
   get("units").value = page.system;
   look(first);

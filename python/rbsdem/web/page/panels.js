@@ -1,7 +1,7 @@
 // What the page shows of the answers: figures and tables.
 
 import { asPng, drawChart, markSign, rowsOfChart, standalone, svgElement } from "./chart.js";
-import { element } from "./fields.js";
+import { element, nameOf } from "./fields.js";
 import { shown, unitOf } from "./units.js";
 
 const KINDS = ["a", "b"];
@@ -20,7 +20,7 @@ export function loopChart(host, state, loops, bands, system) {
   const [unit, factor] = unitOf(system, "force"), lines = [], marks = [], areas = [], told = [];
   loops.forEach((loop, i) => {
     const drift = scaled(loop.displacement, loop.height / 100), force = scaled(loop.force, factor);
-    const name = state.columns[i].name || "AB"[i];
+    const name = nameOf(state, i);
     lines.push({ x: drift, y: force, kind: KINDS[i], label: loops.length > 1 ? name : "" });
     const band = bands?.[i];
     if (band?.lower && band.lower.length === drift.length)
@@ -48,7 +48,7 @@ export function scaleChart(host, state, scales) {
   scales.forEach((found, i) => {
     if (!found?.scales?.length) return;
     const rows = found.scales;
-    lines.push({ x: [0, ...rows.map(row => row.scale)], y: [0, ...rows.map(row => 100 * row.drift)], kind: KINDS[i], label: scales.length > 1 ? state.columns[i].name : "" });
+    lines.push({ x: [0, ...rows.map(row => row.scale)], y: [0, ...rows.map(row => 100 * row.drift)], kind: KINDS[i], label: scales.length > 1 ? nameOf(state, i) : "" });
     for (const row of rows) marks.push({ x: row.scale, y: 100 * row.drift, shape: row.status === "completed" ? "circle" : "cross", kind: KINDS[i], title: row.status });
   });
   if (lines.length) drawChart(host, { lines, marks, fromZero: true, height: 230, xLabel: "Scale of the motion", yLabel: "Peak drift (%)", label: "Peak drift against the scale of the motion" });
@@ -59,7 +59,7 @@ export function curvatureChart(host, state, sections, system) {
   const [unit, factor] = unitOf(system, "moment"), [each, per] = unitOf(system, "curvature"), lines = [], marks = [], faults = [];
   sections.forEach((one, i) => (one?.curvature ?? []).forEach((diagram, confined) => {
     if (diagram.fault) { faults.push(diagram.fault); return; }
-    const name = sections.length > 1 ? state.columns[i].name + ", " : "";
+    const name = sections.length > 1 ? nameOf(state, i) + ", " : "";
     lines.push({ x: scaled(diagram.curvature, per), y: scaled(diagram.moment, factor), kind: KINDS[i] + (confined ? "" : " thin dashed"), label: name + (confined ? "core confined" : "not confined") });
     if (confined) for (const [event, [x, y]] of Object.entries(diagram.events)) {
       const [label, shape] = { cracking: ["cracking", "circle"], yielding: ["yielding", "square"], peak: ["largest moment", "triangle"], ultimate: ["ultimate", "diamond"] }[event];
@@ -74,7 +74,7 @@ export function curvatureChart(host, state, sections, system) {
 export function interactionChart(host, state, sections, own, loops, system, code) {
   const [unit, factor] = unitOf(system, "moment"), [newton, per] = unitOf(system, "force"), lines = [], marks = [], faults = [];
   sections.forEach((one, i) => {
-    const name = sections.length > 1 ? state.columns[i].name + ", " : "", by = one?.code;
+    const name = sections.length > 1 ? nameOf(state, i) + ", " : "", by = one?.code;
     if (by?.fault) faults.push(by.fault);
     else if (by) {
       lines.push({ x: scaled(by.moment, factor), y: scaled(by.axial_load, per), kind: KINDS[i] + " thin", label: name + "nominal" });
@@ -151,7 +151,7 @@ function signOf(name) {
 
 export function stateTables(host, below, state, loops, bands, system) {
   const [unit, factor] = unitOf(system, "force"), [length, metre] = unitOf(system, "length");
-  const names = state.columns.map((one, i) => one.name || "AB"[i]), two = loops.length > 1;
+  const names = state.cases.map((_, i) => nameOf(state, i)), two = loops.length > 1;
   const reached = loops.flatMap((loop, i) => (loop?.states ?? []).map(at => ({ ...at, i })));
   const numbers = at => at ? [shown(100 * Math.abs(at.drift), 3), shown(Math.abs(at.displacement) / metre, 3), shown(Math.abs(at.force) / factor, 4)] : ["–", "–", "–"];
   const rows = [...new Set(reached.map(at => at.name))].map(name => {
@@ -187,7 +187,7 @@ export function codeTable(host, state, sections, system) {
     const [unit, factor] = unitOf(system, CODE_UNITS[first.unit] ?? "number");
     return { cells: [name, ...found.map(value => value ? shown(value.value / factor) : "–"), unit, { text: first.meaning }, { text: first.source + (first.confirmed ? "" : " *") }] };
   });
-  const parts = rows.length ? [table(["Value", ...(lists.length > 1 ? state.columns.map(one => one.name) : [""]), "unit", "meaning", "source"], rows, lists.flat().some(value => !value.confirmed) ? "* not confirmed by a second source" : "")] : [];
+  const parts = rows.length ? [table(["Value", ...(lists.length > 1 ? state.cases.map((_, i) => nameOf(state, i)) : [""]), "unit", "meaning", "source"], rows, lists.flat().some(value => !value.confirmed) ? "* not confirmed by a second source" : "")] : [];
   if (fault) parts.push(element("p", { className: "fault" }, fault));
   host.replaceChildren(...parts);
 }
@@ -214,7 +214,7 @@ export function testCard(test, system, more = "") {
 }
 
 export function rowsOfNear(state, near) {
-  const tests = near.columns.flatMap((column, i) => (column.tests ?? []).map(test => [state.columns[i].name, test]));
+  const tests = near.columns.flatMap((column, i) => (column.tests ?? []).map(test => [nameOf(state, i), test]));
   const scores = Object.keys(tests[0]?.[1].scores ?? {});
   return [["column", "test", "distance", "failure", ...scores], ...tests.map(([name, test]) => [name, test.name, test.distance, test.failure, ...scores.map(score => test.scores[score])])];
 }
@@ -222,7 +222,7 @@ export function rowsOfNear(state, near) {
 export function nearCards(host, state, near, system) {
   const parts = [];
   near.columns.forEach((column, i) => {
-    if (near.columns.length > 1) parts.push(element("h3", {}, `Column ${state.columns[i].name}`));
+    if (near.columns.length > 1) parts.push(element("h3", {}, `Column ${nameOf(state, i)}`));
     if (column.none) parts.push(element("p", { className: "empty" }, column.none));
     else parts.push(element("div", { className: "cards" }, ...column.tests.map(test => testCard(test, system, `distance ${shown(test.distance, 2)}`))));
   });
