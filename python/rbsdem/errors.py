@@ -13,8 +13,8 @@ from typing import Any
 #: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
 #: place of the value in a file and the name of its drawing, if there are any.
 _FIELD = re.compile(
-    r"(?:(?:.* )?line \d+: )?(?:drawing '[^']*': )?(?:([\w ]+?)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
-    r"(?: = |: value \d| is missing)"
+    r"(?:(?:.* )?line \d+: )?(?:drawing '[^']*': )?(?:([\w ]+?)(?:\(\d+\))?: )?"
+    r"([a-z]\w*)(?:\(\d+\))?(?: = |: value \d| is missing)"
 )
 
 

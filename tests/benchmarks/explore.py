@@ -37,7 +37,10 @@ def main(requests: int) -> None:
             for i in range(count):
                 number += 1
                 state = copy.deepcopy(DEFAULT)
-                state["columns"][0]["section"]["width"] = 0.3 + 0.2 * i / count + 1e-5 * number
+                width = 0.3 + 0.2 * i / count + 1e-5 * number
+                for name, values in state["cases"][0]:
+                    if name == "section":
+                        values["width"] = width
                 body = json.dumps({"tab": "benchmark", "number": number, "state": state})
                 heads = {"Content-Type": "application/json"}
                 begun = time.perf_counter()
