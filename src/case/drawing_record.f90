@@ -315,8 +315,8 @@ contains
             if (self%name == '') call messages%add('drawing: name is missing; members of the frame name it')
          else if (drawn) then
             if (is_given(self%height) .or. is_given(self%axial_load) .or. is_given(self%n)) then
-               call messages%add('drawing: height, axial_load and n are those that springs were made for, '// &
-                                 'and there are none; remove them, and give them to the column')
+               call messages%add('drawing: height, axial_load and n are those that springs were made '// &
+                                 'for, and there are none; remove them, and give them to the column')
             end if
          else
             call require('height', is_given(self%height), ' in m')

@@ -41,10 +41,10 @@ contains
       type(frame_type), allocatable :: frame
 
       if (case%is_drawn()) then
-         call fatal_error(error, bad_input, trim(case%drawn_at//' ')//' the case is drawn by sections, or has '// &
-                          'loads that are made of others, and this executable solves springs: type rbsdem '// &
-                          'run CASE.nml with the Python package installed, or make its springs there: '// &
-                          'rbsdem draw CASE.nml > springs.nml')
+         call fatal_error(error, bad_input, trim(case%drawn_at//' ')//' the case is drawn by sections, '// &
+                          'or has loads that are made of others, and this executable solves springs: '// &
+                          'type rbsdem run CASE.nml with the Python package installed, or make its '// &
+                          'springs there: rbsdem draw CASE.nml > springs.nml')
          return
       end if
       if (allocated(case%frame)) then

@@ -96,7 +96,8 @@ contains
       call v%key('n', self%n, '', bound_type(1.0_wp, real(most_bodies, wp)), 'number of rigid bodies')
       call v%key('height', self%height, 'm', above_zero, 'height of the column')
       call v%key('mass', self%mass, 'kg', above_zero, &
-                 'mass of the column, in proportion to the lengths; not needed with masses, or with a section alone', &
+                 'mass of the column, in proportion to the lengths; not needed with masses, or with '// &
+                 'a section alone', &
                  optional=allocated(self%masses) .or. self%drawn)
       call v%key('lengths', self%lengths, 'm', above_zero, &
                  'lengths of the bodies from the ground up; without them all are equal', most_bodies)
