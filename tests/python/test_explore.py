@@ -372,6 +372,19 @@ def test_errors_stand_beside_their_fields(post, changes, field, text):
     assert re.search(text, found[field]), found
 
 
+@pytest.mark.parametrize("start", [DEFAULT, BUILDING])
+def test_a_group_that_is_missing_is_told(post, start):
+    """One by one; those that no case needs leave it as it is."""
+    for i, (name, _) in enumerate(start["cases"][0]):
+        given = state(start, loading={"drive": "displacement", "values": [0.01]})
+        del given["cases"][0][i]
+        answer = post("loops", state=given)
+        (found,) = answer.get("columns") or [answer["frame"]]
+        assert all("defect" not in fault["text"] for fault in found["faults"]), name
+        needed = {"case", "damping", "floor", "ties", "row", "loading", "target", "assess"}
+        assert bool(found["faults"]) != (name in needed - {"loading"}), name
+
+
 def test_all_errors_come_at_once_and_leave_the_other_column(post):
     two = state()
     two["cases"] += copy.deepcopy(two["cases"])
@@ -683,14 +696,31 @@ def test_a_case_in_the_page_names_no_file(post, case_text):
     assert "rbsdem-" not in fault["text"]  # no path of this machine
 
 
+ROWS = [
+    ["row", {"face": face, "number": number, "diameter": 0.016, "steel": 1}]
+    for face, number in (("top", 4), ("bottom", 4), ("side", 2))
+]
+WALL = [
+    ["row", {"face": "both", "number": 4, "diameter": 0.016, "steel": 1}],
+    ["boundary", {"length": 0.3, "hoop_diameter": 0.008, "hoop_spacing": 0.1, "steel": 2}],
+    ["curtain", {"diameter": 0.01, "spacing": 0.2, "steel": 2}],
+    ["curtain", {"direction": "horizontal", "diameter": 0.01, "spacing": 0.2, "steel": 2}],
+]
+
+
 def test_python_gives_the_same_loop(post):
     for changes in (
         {},
         {"shape": "circle", "column_top": "fixed"},
         {"footing": True, "column_top": "fixed"},
         {"loading": {"drive": "displacement", "values": [0.01, 0.03]}},
+        {"groups": ROWS},
+        {"groups": WALL, "section_shape": "wall", "section_depth": 1.6},
     ):
+        groups = changes.pop("groups", [])
         given = state(**changes)
+        if groups:  # in place of the layout
+            given["cases"][0][7 : 9 if groups is WALL else 8] = copy.deepcopy(groups)
         program = post("export", state=given, form="python")["text"]
         names: dict = {}
         exec(compile(program.replace("print(", "str("), "saved.py", "exec"), names)

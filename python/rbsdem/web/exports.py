@@ -43,8 +43,11 @@ from rbsdem.web.state import (
 _PROGRAM = 'import rbsdem\n\ncase = rbsdem.read_case("{}")\nresult = case.run()\nprint(result)\n'
 #: Groups of springs, which are made again where they are those of the drawing.
 _SPRINGS = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
-#: Keys of a column that is drawn.
-_OF_COLUMN = ("height", "axial_load", "top", "top_mass", "top_inertia", "axial_height")
+#: Keys of a column and of its drawing that are made with its springs.
+_MADE = {
+    "column": ("n", "mass", "lengths", "depth", "rotary_inertia", "kinematics", "model"),
+    "drawing": ("height", "axial_load", "n"),
+}
 
 
 def namelist(case: Any, records: Mapping[str, GroundMotion]) -> str:
@@ -106,14 +109,9 @@ def _drawn_again(groups: list[Group], case: Case) -> list[Group] | None:
         return None
     made: list[Group] = []
     for name, values in groups:
-        if name == "column":
-            footing = {key: values[key] for key in values if key.startswith("footing_")}
-            own = {key: values[key] for key in _OF_COLUMN if key in values}
-            made.append((name, {"top": "free"} | own | footing))
-        elif name == "drawing":
-            made.append((name, {"version": values["version"]}))
-        elif name not in _SPRINGS or values.get("joint") in (0, [0]):
-            made.append((name, values))
+        if name not in _SPRINGS or values.get("joint") in (0, [0]):
+            own = {key: one for key, one in values.items() if key not in _MADE.get(name, ())}
+            made.append((name, {"top": "free"} | own if name == "column" else own))
     try:
         again = case_of_text(text_of(made, {}, Faults(made)))
     except InputError:
@@ -204,6 +202,8 @@ def _python(drawn: Drawn, column: Mapping[str, Any], loading: Mapping[str, Any])
 
 def _code(value: Any) -> str:
     """Return a record as Python, with the values that were given."""
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_code, value))},)"
     if not dataclasses.is_dataclass(value):
         return repr(value)
     given = ", ".join(f"{name}={_code(part)}" for name, part in _stated(value))
@@ -213,12 +213,14 @@ def _code(value: Any) -> str:
 
 def _stated(record: Any) -> list[tuple[str, Any]]:
     """Return the values of a record that do not follow from others."""
-    values = [(field, getattr(record, field.name)) for field in dataclasses.fields(record)]
+    given = {field.name: getattr(record, field.name) for field in dataclasses.fields(record)}
+    if any(given.get(name) for name in ("layout", "top", "bottom", "side")):
+        given.pop("bars", None)  # of a section, which follow from its layout or its rows
+    default = {field.name: field.default for field in dataclasses.fields(record)}
     return [
-        (field.name, value)
-        for field, value in values
-        # The bars of a section follow from its layout.
-        if value is not None and value != field.default and not isinstance(value, Derived | tuple)
+        (name, value)
+        for name, value in given.items()
+        if value is not None and value != default[name] and not isinstance(value, Derived)
     ]
 
 

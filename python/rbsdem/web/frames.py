@@ -142,6 +142,7 @@ def checked(case: Case, result: FrameResult, faults: Faults) -> dict[str, Any]:
     for assessment in made.assessments[:1]:
         found |= {"limits_of": assessment.source, "levels": assessment.levels}
         found |= {"level": made.levels[0], "accepted": assessment.accepted(made.levels[0])}
+        found |= {"counts": assessment.counts()}
         found |= {"at_target": assessment.displacement is not None}
         found |= {"ends": _ends(assessment), "notes": assessment.warnings}
     point = made.target

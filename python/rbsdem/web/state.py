@@ -14,6 +14,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -36,68 +37,53 @@ from rbsdem.section.parameters import VERSION
 Group: TypeAlias = tuple[str, dict[str, Any]]
 Groups: TypeAlias = Sequence[Group]
 
-_STEELS: list[list[Any]] = [["steel", {"id": 1, "fy": 450e6}], ["steel", {"id": 2, "fy": 400e6}]]
 _DRIFTS = [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06]
+_DRAWN = {"version": VERSION}
+_STEELS: list[Any] = [["steel", {"id": 1, "fy": 450e6}], ["steel", {"id": 2, "fy": 400e6}]]
 
+# fmt: off
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
-DEFAULT: dict[str, Any] = {
-    "cases": [
-        [
-            ["case", {"title": "A"}],
-            ["column", {"height": 1.6, "axial_load": 744e3, "top": "free"}],
-            ["drawing", {"version": VERSION}],
-            ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.013}],
-            ["concrete", {"fc": 46.5e6}],
-            ["steel", {"id": 1, "fy": 446e6, "fu": 702e6}],
-            ["steel", {"id": 2, "fy": 364e6}],
-            ["layout", {"number": 12, "diameter": 0.016, "steel": 1}],
-            ["ties", {"diameter": 0.007, "spacing": 0.085, "steel": 2, "legs": 4}],
-            [
-                "loading",
-                {"drive": "displacement", "unit": "drift", "amplitudes": _DRIFTS, "cycles": [2]},
-            ],
-        ]
-    ]
-}
+DEFAULT: dict[str, Any] = {"cases": [[
+    ["case", {"title": "A"}],
+    ["column", {"height": 1.6, "axial_load": 744e3, "top": "free"}],
+    ["drawing", _DRAWN],
+    ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.013}],
+    ["concrete", {"fc": 46.5e6}],
+    ["steel", {"id": 1, "fy": 446e6, "fu": 702e6}],
+    ["steel", {"id": 2, "fy": 364e6}],
+    ["layout", {"number": 12, "diameter": 0.016, "steel": 1}],
+    ["ties", {"diameter": 0.007, "spacing": 0.085, "steel": 2, "legs": 4}],
+    ["loading", {"drive": "displacement", "unit": "drift", "amplitudes": _DRIFTS, "cycles": [2]}],
+]]}
 
 #: The building that the page begins with.
-BUILDING: dict[str, Any] = {
-    "cases": [
-        [
-            [
-                "frame",
-                {
-                    "storeys": [3.2] * 3,
-                    "bays": [6.0, 6.0],
-                    "kinematics": "pdelta",
-                    "live_share": 0.3,
-                    "self_weight": True,
-                    "mass": "from_loads",
-                },
-            ],
-            ["floor", {"dead_load": 20e3, "live_load": 8e3}],
-            ["column_of", {"kind": "C1"}],
-            ["beam_of", {"kind": "B1"}],
-            ["damping", {"modal": [0.05]}],
-            ["drawing", {"name": "C1", "version": VERSION}],
-            ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.03}],
-            ["concrete", {"fc": 30e6}],
-            *_STEELS,
-            ["layout", {"number": 8, "diameter": 0.02, "steel": 1}],
-            ["ties", {"diameter": 0.008, "spacing": 0.1, "steel": 2}],
-            ["drawing", {"name": "B1", "version": VERSION}],
-            ["section", {"shape": "rectangle", "width": 0.3, "depth": 0.5, "cover": 0.03}],
-            ["concrete", {"fc": 30e6}],
-            *_STEELS,
-            ["row", {"face": "top", "number": 4, "diameter": 0.016, "steel": 1}],
-            ["row", {"face": "bottom", "number": 3, "diameter": 0.016, "steel": 1}],
-            ["ties", {"diameter": 0.008, "spacing": 0.15, "steel": 2}],
-            ["loading", {"drive": "displacement", "values": [0.288]}],
-            ["target", {"method": "en_1998", "spectrum": "en_1998", "ag": 0.25, "soil": "C"}],
-            ["assess", {"code": "en_1998_3"}],
-        ]
-    ]
-}
+BUILDING: dict[str, Any] = {"cases": [[
+    ["frame", {
+        "storeys": [3.2] * 3, "bays": [6.0, 6.0], "kinematics": "pdelta", "live_share": 0.3,
+        "self_weight": True, "mass": "from_loads",
+    }],
+    ["floor", {"dead_load": 20e3, "live_load": 8e3}],
+    ["column_of", {"kind": "C1"}],
+    ["beam_of", {"kind": "B1"}],
+    ["damping", {"modal": [0.05]}],
+    ["drawing", {"name": "C1", **_DRAWN}],
+    ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.03}],
+    ["concrete", {"fc": 30e6}],
+    *_STEELS,
+    ["layout", {"number": 8, "diameter": 0.02, "steel": 1}],
+    ["ties", {"diameter": 0.008, "spacing": 0.1, "steel": 2}],
+    ["drawing", {"name": "B1", **_DRAWN}],
+    ["section", {"shape": "rectangle", "width": 0.3, "depth": 0.5, "cover": 0.03}],
+    ["concrete", {"fc": 30e6}],
+    *_STEELS,
+    ["row", {"face": "top", "number": 4, "diameter": 0.016, "steel": 1}],
+    ["row", {"face": "bottom", "number": 3, "diameter": 0.016, "steel": 1}],
+    ["ties", {"diameter": 0.008, "spacing": 0.15, "steel": 2}],
+    ["loading", {"drive": "displacement", "values": [0.288]}],
+    ["target", {"method": "en_1998", "spectrum": "en_1998", "ag": 0.25, "soil": "C"}],
+    ["assess", {"code": "en_1998_3"}],
+]]}
+# fmt: on
 
 #: Columns side by side; cycles of a path; values of a record that a page shows; storeys and bays.
 _MOST_CASES, _MOST_CYCLES, MOST_VALUES, _MOST_CELLS = 2, 200, 60_000, 12
@@ -222,9 +208,9 @@ def _block(groups: Groups, drawing: str | None) -> list[int]:
 def drawings(groups: Groups) -> Iterator[tuple[str, list[int]]]:
     """Yield the name of each drawing and the numbers of its groups."""
     starts = [i for i, (name, _) in enumerate(groups) if name == "drawing"]
-    for first, last in zip(starts, [*starts[1:], len(groups)], strict=True):
-        own = [i for i in range(first + 1, last) if groups[i][0] in _OF_DRAWING]
-        yield str(groups[first][1].get("name", "")), [first, *own]
+    for begin, end in pairwise([*starts, len(groups)]):
+        own = [i for i in range(begin + 1, end) if groups[i][0] in _OF_DRAWING]
+        yield str(groups[begin][1].get("name", "")), [begin, *own]
 
 
 @dataclasses.dataclass(frozen=True)

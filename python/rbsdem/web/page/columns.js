@@ -3,7 +3,7 @@
 import { inUnits, shown, unitOf } from "./units.js";
 import { drawColumn, scalesOf } from "./drawing.js";
 import { LOADING_FIELDS, element, fieldGroup, fieldRow, fieldsOf, groupOf, isShaken, isText, loadingRows, loadingValue, nameOf, placeOf, putAt, putLoading, refreshFields, showFaults, toldAs, valuesOf } from "./fields.js";
-import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue } from "./section.js";
+import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue, shapeOf } from "./section.js";
 import { codeTable, curvatureChart, interactionChart, loopChart, nameOfState, nearCards, rowsOfNear, scaleChart, stateTables, timeChart } from "./panels.js";
 import { beside, changed, copied, edit, fixed, get, keyOf, page, say, showNotes, showStatus } from "./machine.js";
 
@@ -263,7 +263,8 @@ function choose(i) {
 // What is drawn of a column: its first groups by their names.
 function drawingOf(groups) {
   const found = name => ({ ...valuesOf(groups, name) });
-  return { section: found("section"), concrete: found("concrete"), layout: groupOf(groups, "layout") && found("layout"), column: found("column"), footed: onSprings(groups) };
+  const section = { ...found("section"), shape: shapeOf(groups) };
+  return { section, concrete: found("concrete"), layout: groupOf(groups, "layout") && found("layout"), column: found("column"), footed: onSprings(groups) };
 }
 
 // Whether a value changes what there is to be filled in.

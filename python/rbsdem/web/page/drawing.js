@@ -4,7 +4,7 @@ import { svgElement } from "./chart.js";
 import { barSize, shown, stepOf, unitOf } from "./units.js";
 
 const valueIn = (drawing, path) => path.split(".").reduce((part, name) => part?.[name], drawing);
-const SECTION = 190, LEFT = 26, TOP = 16, HEIGHT = 250, TALL = 200;
+const SECTION = 190, LEFT = 26, TOP = 16, HEIGHT = 250, ALONE = 214;
 
 // The handles of a section: where each is, which field it moves, how a pixel moves it, steps of the keys.
 function handlesOf({ section, layout }, look) {
@@ -62,7 +62,7 @@ const scaleOf = ({ section }) => 150 / Math.max(...(section.shape.includes("circ
 
 // A section alone, with its handles; a scale that is given stays while a handle moves. Returns the scale.
 export function drawSection(host, drawing, figure, { system, scale = scaleOf(drawing), title, kind, move, moved, stale }) {
-  const svg = svgElement("svg", { viewBox: `0 0 ${LEFT + SECTION + 14} ${HEIGHT}`, class: `drawing ${kind}` + (stale ? " stale" : ""), role: "group", "aria-label": `Section of the ${title}` });
+  const svg = svgElement("svg", { viewBox: `0 0 ${LEFT + SECTION + 14} ${ALONE}`, class: `drawing ${kind}` + (stale ? " stale" : ""), role: "group", "aria-label": `Section of the ${title}` });
   if (sizesOf(drawing).some(value => typeof value !== "number")) { refused(host, svg); return scale; }
   const look = sectionInto(svg, drawing, figure, scale, system);
   svg.append(svgElement("text", { class: "name", x: 4, y: 14 }, title));

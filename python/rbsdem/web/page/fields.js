@@ -45,7 +45,7 @@ export function placeOf(groups, path, own = groups) {
 }
 
 // Path by names of a path by places.
-export function namedPath(groups, path) {
+function namedPath(groups, path) {
   const [name, key] = parts(path);
   return /^\d+$/.test(name) ? `${groups[Number(name)]?.[0]}.${key}` : `${name.split("@")[0]}.${key}`;
 }
@@ -74,7 +74,7 @@ export const LOADING_FIELDS = [
 ];
 
 const CYCLIC = { drive: "displacement", unit: "drift" }, GROUND = { drive: "ground_acceleration", scale: 1 };
-export const LOADINGS = {
+const LOADINGS = {
   push: { drive: "displacement", values: [0.288] },
   amplitudes: { ...CYCLIC, amplitudes: [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06], cycles: [2] },
   named: { ...CYCLIC, protocol: "aci_374_1", largest: 0.06 },
@@ -82,7 +82,7 @@ export const LOADINGS = {
   record: { ...GROUND, file: "" },
 };
 
-export function kindOfLoading({ drive, file, protocol, amplitudes, values }) {
+function kindOfLoading({ drive, file, protocol, amplitudes, values }) {
   if (drive === "ground_acceleration") return file?.startsWith("synthetic ") ? "synthetic" : "record";
   return protocol ? "named" : amplitudes ? "amplitudes" : values && values.length <= 1 ? "push" : "path";
 }
@@ -95,6 +95,7 @@ export function loadingValue(loading, key) {
   return key === "scale" ? loading.scale ?? 1 : loading[key];
 }
 export function putLoading(groups, key, value) {
+  if (!groupOf(groups, "loading")) groups.push(["loading", {}]);
   const loading = groupOf(groups, "loading");
   if (key === "kind") {
     if (value !== kindOfLoading(loading[1])) loading[1] = JSON.parse(JSON.stringify(LOADINGS[value] ?? loading[1]));
@@ -127,7 +128,7 @@ export function toldAs(fault, known, groups, system) {
   return inUnits(fault.text, system, field.dimension).replace(new RegExp(`^(?:[a-z_ ]+(?:\\(\\d+\\))?: )?${path.split(".")[1]}(?:\\(\\d+\\))? = `), `${label} = `);
 }
 
-export function shownValue(field, value, system) {
+function shownValue(field, value, system) {
   const [, factor] = field.dimension ? unitOf(system, field.dimension) : ["", 1];
   if (Array.isArray(value)) return value.map(v => typed(v, factor)).join(", ");
   return typed(value, factor);
@@ -143,11 +144,11 @@ function readValue(field, text, system) {
 const idOf = path => "f-" + path.replaceAll(/[.@]/g, "-");
 
 // The input of a field; `edit(value, done)` is called while one types and when it is left. `at` is the path that messages have.
-export function inputOf(field, value, system, edit, fixed, at = field.path, id = idOf(field.path)) {
+function inputOf(field, value, system, edit, fixed, at = field.path, id = idOf(field.path)) {
   let input;
   if (field.choices) {
     input = element("select", { id, disabled: fixed });
-    for (const [key, text] of field.choices) input.append(element("option", { value: String(key), selected: key === (value ?? field.choices[0][0]) }, text));
+    for (const [key, text] of field.choices) input.append(element("option", { value: String(key), selected: key === (value ?? field.usual ?? field.choices[0][0]) }, text));
     input.addEventListener("change", () => edit(field.choices.find(([key]) => String(key) === input.value)[0], true));
   } else {
     const given = { id, value: shownValue(field, value, system), readOnly: fixed, spellcheck: false };
@@ -266,7 +267,7 @@ export function refreshFields(form, fields, valueOf, system) {
     const input = form.querySelector(`[id="${idOf(field.path)}"]`);
     if (!input || input === document.activeElement) continue;
     const value = valueOf(field.path);
-    if (field.choices) input.value = String(value ?? field.choices[0][0]);
+    if (field.choices) input.value = String(value ?? field.usual ?? field.choices[0][0]);
     else input.value = shownValue(field, value, system);
   }
 }

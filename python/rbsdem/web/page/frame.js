@@ -4,7 +4,7 @@ import { inUnits, shown, unitOf } from "./units.js";
 import { drawChart, svgElement } from "./chart.js";
 import { drawSection } from "./drawing.js";
 import { LOADING_FIELDS, drawingsOf, element, fieldGroup, fieldRow, fieldsOf, groupOf, listRows, loadingRows, loadingValue, placeOf, putAt, putLoading, refreshFields, showFaults, toldAs, valuesOf } from "./fields.js";
-import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue } from "./section.js";
+import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue, shapeOf } from "./section.js";
 import { table, timeChart } from "./panels.js";
 import { beside, changed, copied, edit, get, keyOf, page, say, showNotes, showStatus } from "./machine.js";
 
@@ -23,7 +23,7 @@ const LOADS = [
 const DEMAND = [
   { path: "target.spectrum", label: "Spectrum", choices: [["en_1998", "EN 1998"], ["asce_41", "ASCE 41-17"]] },
   { path: "target.ag", label: "Acceleration on rock, in g", dimension: "ratio", step: 0.05, spectrum: "en_1998" },
-  { path: "target.soil", label: "Ground", choices: ["A", "B", "C", "D", "E"].map(soil => [soil, soil]), spectrum: "en_1998" },
+  { path: "target.soil", label: "Ground", choices: ["A", "B", "C", "D", "E"].map(soil => [soil, soil]), usual: "B", spectrum: "en_1998" },
   { path: "target.s_xs", label: "S_XS, in g", dimension: "ratio", step: 0.05, spectrum: "asce_41" },
   { path: "target.s_x1", label: "S_X1, in g", dimension: "ratio", step: 0.05, spectrum: "asce_41" },
   { path: "target.method", label: "Target displacement by", choices: [["en_1998", "N2 of EN 1998-1"], ["asce_41", "coefficients, ASCE 41-17"], ["capacity_spectrum", "capacity spectrum"]] },
@@ -251,7 +251,7 @@ function showDrawings() {
   shownOnes.forEach(([name, of], i) => {
     if (!host.children[i]) host.append(element("div", { className: "drawbox" }));
     host.children[i].dataset.column = name;
-    const figure = latest?.frame.sections[name], drawing = { section: { ...valuesOf(of, "section") }, layout: valuesOf(of, "layout") };
+    const figure = latest?.frame.sections[name], drawing = { section: { ...valuesOf(of, "section"), shape: shapeOf(of) }, layout: valuesOf(of, "layout") };
     scales[name] = drawSection(host.children[i], drawing, figure, { system: page.system, title: name, kind: "a", stale: latest?.key !== keyOf(state) || !figure, scale: page.dragging ? scales[name] : undefined,
       move: (at, value, done) => { if (shownDrawing !== name) choose(name, chosen); edit(at, value, done, true); }, moved: (at, begins = false) => { page.dragging = begins; if (!begins) showDrawings(); } });
   });
@@ -288,7 +288,9 @@ function showResponse() {
 function showChecks() {
   const found = checks(), ends = (found?.ends ?? []).toSorted((a, b) => b.ratio - a.ratio);
   get("attarget").hidden = !found?.target?.reached;
-  const told = found?.limits_of && `${found.limits_of}, ${found.accepted ? "accepted" : "not accepted"} at ${found.level}; ratios of ${found.levels.at(-1)}, ${found.at_target ? "at the target displacement" : "largest of all rows"}${(found.notes ?? []).map(one => `. ${one}`).join("")}`;
+  // How many ends and joints exceed what asks for them, and how many no code covers.
+  const over = found?.limits_of && [[found.level, `exceed ${found.level}`], ["shear", "exceed their strength in shear"], ["not evaluated", "are not evaluated"]].filter(([key]) => found.counts[key]).map(([key, words]) => `${found.counts[key]} ${words}`);
+  const told = found?.limits_of && `${found.limits_of}: ${found.accepted ? "accepted" : "not accepted"} at ${found.level}${over.length ? `, as ${over.join(", ")}` : ""}. Ratios of ${found.levels.at(-1)}, ${found.at_target ? "at the target displacement" : "largest of all rows"}${(found.notes ?? []).map(one => `. ${one}`).join("")}`;
   get("membertable").replaceChildren(ends.length ? table(["Member", "end", "ratio", "levels exceeded", "by"], ends.slice(0, 12).map(one => ({ cells: [one.member, one.end, one.status === "evaluated" ? shown(one.ratio, 3) : "–", found.levels.slice(0, Math.max(0, one.exceeded)).join(", ") || "none", { text: one.status === "evaluated" ? one.governed_by : one.status }] })), told)
     : element("p", { className: "empty" }, found ? "No member is judged." : "Computing"));
   showMessages();
@@ -343,7 +345,7 @@ function drawFrame(host, found, at) {
   // Room for the load at the left, for the displacements and the heights at the right.
   const times = Math.min(0.1 * Math.max(wide, high) / Math.max(largest, -least), 50), away = times * largest, before = -times * least;
   const scale = Math.min((width - 132) / (wide + away + before), 380 / high), left = 60 + before * scale + (width - 132 - (wide + away + before) * scale) / 2, top = 46, ground = top + high * scale;
-  const legend = byLevels ? ["within all", ...(checks()?.levels ?? []).map(level => `exceed ${level}`)].map((text, i) => [EXCEEDED[i], text]) : STATES.slice(0, 3).map(([, kind, text]) => [kind, text]);
+  const legend = byLevels ? ["within all", ...(checks()?.levels ?? []).map(level => `exceeds ${level}`)].map((text, i) => [EXCEEDED[i], text]) : STATES.slice(0, 3).map(([, kind, text]) => [kind, text]);
   const narrow = width < 460, height = ground + 50 + 16 * (narrow ? legend.length : 1);
   const put = ([x, y]) => [left + x * scale, ground - y * scale], place = (i, point, far = times) => put([0, 1].map(k => found.still[i][point][k] + far * moved[i][point][k]));
   const path = (i, far) => found.still[i].map((_, point) => (point ? "L" : "M") + place(i, point, far).map(value => value.toFixed(1)).join(" ")).join("");

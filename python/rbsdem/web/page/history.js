@@ -42,7 +42,7 @@ function decoded(text) {
 }
 
 const isGroup = one => Array.isArray(one) && one.length === 2 && typeof one[0] === "string" && one[1] && typeof one[1] === "object" && !Array.isArray(one[1]);
-export const isState = state => Array.isArray(state?.cases) && state.cases.length >= 1 && state.cases.length <= 2
+const isState = state => Array.isArray(state?.cases) && state.cases.length >= 1 && state.cases.length <= 2
   && state.cases.every(one => typeof one === "string" || (Array.isArray(one) && one.every(isGroup)));
 
 // The state and the units of a link, or null; it may come from anywhere.

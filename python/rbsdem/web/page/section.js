@@ -66,7 +66,7 @@ const CELLS = {
     { key: "clear", label: "clear", dimension: "length", step: 0.005, optional: "–" },
   ],
   curtain: [
-    { key: "direction", label: "bars", choices: [["vertical", "vertical"], ["horizontal", "horizontal"]] },
+    { key: "direction", label: "bars", choices: [["vertical", "upright"], ["horizontal", "level"]] },
     { key: "diameter", label: "size", dimension: "length", bar: true },
     { key: "spacing", label: "every", dimension: "length", step: 0.025 },
     { key: "faces", label: "layers", dimension: "number", whole: true, step: 1, optional: "2" },
@@ -76,7 +76,7 @@ const OF_WALL = [{ key: "face", label: "end", choices: [["both", "both"], ["star
 export const SECTION_KEYS = [...SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path),
   ...Object.entries(CELLS).flatMap(([name, cells]) => cells.map(cell => ({ ...cell, path: `${name}.${cell.key}` })))];
 
-export const shapeOf = own => valuesOf(own, "section")?.shape;
+export const shapeOf = own => String(valuesOf(own, "section")?.shape ?? "rectangle");
 const barsOf = own => groupOf(own, "layout") ? "layout" : "row";
 
 // What a field of a section shows.
@@ -99,7 +99,7 @@ const sized = (number, otherwise) => typeof number === "number" && number > 0 ? 
 const inRows = (size, steel) => [["row", { face: "top", number: 3, diameter: size, steel }], ["row", { face: "bottom", number: 3, diameter: size, steel }]];
 
 // Another shape, or bars in another way: the groups that it needs in place of those that it has not.
-export function reshape(groups, own, shape, bars = ["tee", "wall"].includes(shape) ? "row" : "layout") {
+function reshape(groups, own, shape, bars = ["tee", "wall"].includes(shape) ? "row" : "layout") {
   const before = { ...valuesOf(own, "section") }, section = groupOf(own, "section")[1], steel = steelOf(own), round = ROUND.includes(shape);
   const size = sized(before.width ?? before.diameter, 0.4), hoop = groupOf(own, "ties") ?? groupOf(own, "spiral"), bar = sized((groupOf(own, "layout") ?? groupOf(own, "row"))?.[1].diameter, 0.016);
   for (const key of Object.keys(section)) if (!ALWAYS.includes(key) && !SIZES[shape].includes(key)) delete section[key];
