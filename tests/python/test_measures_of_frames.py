@@ -29,6 +29,11 @@ def test_measures_depend_neither_on_points_nor_on_rows(frame, points):
     push = rbsdem.pushover(frame, drift=0.02, points=7)
     path = rbsdem.cyclic(frame, displacement=far * np.arange(1, points + 1) / points)
     sparse = rbsdem.cyclic(frame, displacement=far * np.arange(1, 61) / 60, every=30)
+    if points == 1:
+        # Rows of corners between few points are no path of all points.
+        given = {"displacement": sparse.call["displacement"], "every": 30, "corners": True}
+        corners = rbsdem.cyclic(frame, **given).path
+        np.testing.assert_array_equal(corners.time, sparse.path.time)
     for other in (path, sparse):
         assert len(other.events) == len(push.events)
         for one, two in zip(push.events, other.events, strict=True):

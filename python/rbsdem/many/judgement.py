@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from rbsdem._files import text_table
 from rbsdem.checks.acceptance import LEVELS, Assessment, assess
 from rbsdem.checks.target import Target, target
 from rbsdem.errors import InputError
@@ -59,7 +60,7 @@ class Judgement:
         for found, level in zip(self.assessments, self.levels, strict=True):
             word = "accepted" if found.accepted(level) else "not accepted"
             lines += [str(found), f"{word} at {level}; the largest ratios:"]
-            lines.append(found.worst(5, level).to_string(index=False, float_format="{:.4g}".format))
+            lines.append(text_table(found.worst(5, level)))
         return "\n".join(lines)
 
 

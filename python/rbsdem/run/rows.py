@@ -214,7 +214,7 @@ class Rows(_Channels):
         known = vars(self)
         if self.dynamic or "_is_path" in known:
             return self
-        if self.call.get("corners") and not self._is_column:
+        if self.call.get("corners") and not (self._is_column or self.call.get("every")):
             return self
         if "_path" not in known:
             known["_path"] = self._follow_corners()
