@@ -195,6 +195,20 @@ def test_summary_of_a_run_has_the_figures_of_its_rows(run_cli, dynamic_text, fol
     assert 0 < float(figures["time_step_s"]) <= 0.2 * limit * (1 + 1e-5)
 
 
+def test_ground_that_no_earthquake_moves_is_told(run_cli, tmp_path):
+    """As the package tells it (test_measures_of_frames.py); the bound is 49.03 m/s2."""
+    case = write(
+        tmp_path,
+        "&column n = 1, height = 2.0, masses = 900.0 /\n&flexure rule = 'elastic', k = 4e7 /\n"
+        "&shear rule = 'elastic', k = 3e8 /\n&loading drive = 'ground_acceleration', "
+        "time = 0, 0.01, 0.02, values = 0, 49.1, 0 /\n&analysis method = 'rk4' /\n",
+    )
+    told = "note: the ground: its peak is 5.00681 g; no ground has moved with more than 5 g"
+    assert told in run_cli(["run", case], tmp_path).stdout
+    case.write_text(case.read_text().replace("49.1", "49.0"))
+    assert "5 g" not in run_cli(["run", case, "-o", "b.csv"], tmp_path).stdout
+
+
 def test_csv_says_version_case_units_and_is_read_by_numpy(run_cli, case_text, tmp_path):
     write(tmp_path, case_text(case="title = 'Säule, \"Nr 1\"; half'"))
     quick(run_cli, tmp_path, "run", "case.nml")
