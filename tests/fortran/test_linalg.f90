@@ -17,6 +17,7 @@ contains
 
       tests = [unit_test('band: L D L'' solves and counts negative eigenvalues, narrow and wide', band), &
                unit_test('band with a border, also where the band has no inverse', bordered), &
+               unit_test('band with a border and negative pivots', indefinite_with_border), &
                unit_test('tridiagonal system, and one that is not positive', tridiagonal), &
                unit_test('general band needs pivots, two right-hand sides', general_band), &
                unit_test('dense system by LAPACK, and a singular one', dense_system)]
@@ -38,7 +39,7 @@ contains
    subroutine band(error)
       type(error_type), allocatable, intent(inout) :: error
       integer, parameter :: n = 7
-      type(band_matrix) :: a
+      type(band_matrix) :: a, fresh
       real(wp) :: b(n), expected(n)
       integer :: i, width
       logical :: regular
@@ -65,8 +66,53 @@ contains
          call a%solve(b, regular)
          call check_true(error, regular, 'regular')
          call check_close(error, b, expected, 1.0e-12_wp, 0.0_wp, 'indefinite')
+         ! Columns before a change keep their factor, and the others have the bits of a new one.
+         call fresh%create(n, width)
+         a%band(:4, :) = bending(n)
+         a%band(1, :) = a%band(1, :) - 1.0_wp
+         a%band(1, 5) = 9.0_wp
+         fresh%band(:, :) = a%band
+         call a%factor()
+         call fresh%factor()
+         call check_close(error, reshape(a%triangle, [size(a%triangle)]), &
+                          reshape(fresh%triangle, [size(a%triangle)]), 0.0_wp, 0.0_wp, 'changed')
+         call check_true(error, a%negative == fresh%negative, 'negative pivots')
       end do
    end subroutine band
+
+   !> A scaled matrix with negative pivots of sound size, and one with a pivot next to nothing.
+   subroutine indefinite_with_border(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: n = 7
+      real(wp), parameter :: shift(2) = [1.0_wp, 5.0_wp - 1.0e-9_wp]
+      type(band_matrix) :: a
+      real(wp) :: lower(4, n), dense(n, n), x(n), y, column(n), row(n), f(n)
+      integer :: i, j, k
+      logical :: regular
+
+      column = [(1.0_wp/i, i=1, n)]
+      row = [(real(i, wp), i=1, n)]
+      f = [((-1.0_wp)**i, i=1, n)]
+      do k = 1, size(shift)
+         lower = bending(n)
+         call a%create(n, 5, stiffness=lower(1, :))
+         lower(1, :) = lower(1, :) - shift(k)
+         a%band(:4, :) = lower
+         do j = 1, n
+            do i = 1, n
+               dense(i, j) = 0.0_wp
+               if (abs(i - j) < 4) dense(i, j) = lower(1 + abs(i - j), min(i, j))
+            end do
+         end do
+         call a%factor()
+         call check_true(error, a%negative > 0, 'negative pivots')
+         call a%set_border(column, row, regular)
+         call a%solve_bordered(f, 3.0_wp, x, y, regular)
+         call check_true(error, regular, 'regular')
+         call check_close(error, [matmul(dense, x) - column*y, sum(row*x)], [f, 3.0_wp], 1.0e-11_wp, 0.0_wp, &
+                          'balance')
+      end do
+   end subroutine indefinite_with_border
 
    !> (1 0; 0 0) has no inverse, with the border (0 1) it has.
    subroutine bordered(error)

@@ -1,0 +1,157 @@
+"""Times of columns and frames, beside another build and beside OpenSees. Nothing is asserted.
+
+    python tests/benchmarks/speed.py [--against PYTHON] [--rounds 3] [--only PATTERN]
+
+Least processor times; `--against` takes the Python interpreter of another version, and both run in
+turns. Ratios to OpenSees are printed where openseespy is installed: the models, loads and steps are
+those of `studies/frames_opensees.py`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import re
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from drawn_building import building, least
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+import rbsdem
+
+MASS, LOAD = 20e3, 10e3
+
+
+def record() -> tuple[np.ndarray, np.ndarray]:
+    """Return times [s] and accelerations [m/s2] of 20 s of ground motion."""
+    t = np.arange(0, 20.0001, 0.01)
+    a = 4 * np.sin(2 * np.pi * t / 0.9) * np.exp(-(((t - 6) / 5) ** 2))
+    return t, a + 1.5 * np.sin(2 * np.pi * t / 0.31) * np.exp(-(((t - 8) / 6) ** 2))
+
+
+def frame(storeys: int, bays: int, **more: Any) -> rbsdem.Frame:
+    """Return a frame of point hinges under its dead load."""
+    columns, beams = (
+        rbsdem.FrameMember(30e9, area=area, inertia=inertia, yield_moment=moment, hardening=0.01)
+        for area, inertia, moment in ((0.16, 2.1e-3, 250e3), (0.15, 2.0e-3, 200e3))
+    )
+    given = {"floor_mass": MASS * bays, "beam_load": LOAD, "kinematics": "pdelta"}
+    given["damping"] = rbsdem.Damping(mass=0.3, stiffness=1e-3)
+    return rbsdem.Frame.grid(
+        [3.2] * storeys, [6.0] * bays, columns=columns, beams=beams, **(given | more)
+    )
+
+
+def shake(structure: rbsdem.Frame) -> Callable[[], Any]:
+    """Return a run under the record, 4000 steps of Newmark's method."""
+    t, a = record()
+    return lambda: rbsdem.time_history(
+        structure, t, ground_acceleration=a, method="newmark", dt=0.005, every=4000
+    )
+
+
+def runs() -> dict[str, Callable[[], Any]]:
+    """Return what is timed, by name."""
+    small, large = frame(3, 3), frame(8, 8)
+    modal = frame(3, 3, damping=rbsdem.Damping(modal=0.03))
+    tall = frame(24, 12, floor_mass=12 * 40e3, beam_load=20e3)
+    drawn = building()
+    one = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
+    way = one.height * np.concatenate([np.linspace(0, s * 0.03, 2000) for s in (1, -1, 1)])
+    paper = rbsdem.peer.paper_sections()["zahn_7"]
+
+    def make() -> rbsdem.Column:
+        return rbsdem.section.column(paper.section, paper.length, axial_load=paper.axial_load)
+
+    layered = make()
+    drifts = paper.length * np.concatenate([np.linspace(0, s * 0.02, 1300) for s in (1, -1, 1)])
+    loaded = rbsdem.peer.paper_columns()["soesianawati_1"]
+    t, a = record()
+    return {
+        "push-over, 3 x 3": lambda: rbsdem.pushover(small, drift=0.03, points=1),
+        "push-over, 8 x 8": lambda: rbsdem.pushover(large, drift=0.03, points=1),
+        "push-over, 24 x 12, to its fall": lambda: rbsdem.pushover(tall, drift=0.01),
+        "record, 3 x 3": shake(small),
+        "record, 8 x 8": shake(large),
+        "record, 3 x 3, modal damping": shake(modal),
+        "push-over, drawn building": lambda: rbsdem.pushover(drawn, drift=0.015),
+        "static, one body, 6000 points": lambda: rbsdem.cyclic(one, displacement=way),
+        "static, layered column, 3900 points": lambda: rbsdem.cyclic(layered, displacement=drifts),
+        "record, one body": lambda: rbsdem.time_history(
+            loaded, t, ground_acceleration=a, method="newmark", dt=0.005
+        ),
+        "layered column, made from its drawing": make,
+    }
+
+
+def opensees() -> dict[str, Callable[[], Any]]:
+    """Return the same work by OpenSees, or nothing where it is not installed."""
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
+    try:
+        study = importlib.import_module("frames_opensees")
+    except ImportError:
+        return {}
+    t, a = record()
+    work: dict[str, Callable[[], Any]] = {}
+    for n in (3, 8):
+        work[f"push-over, {n} x {n}"] = lambda n=n: study.pushed(n, n, [0.03 * n * 3.2], 300)
+        work[f"record, {n} x {n}"] = lambda n=n: study.shaken(n, n, "pdelta", LOAD, t, a, 0.005)
+    return work
+
+
+def times(pattern: str) -> dict[str, float]:
+    """Return the least processor times of this package [s]."""
+    warnings.simplefilter("ignore")
+    found = {}
+    for name, run in runs().items():
+        if not re.search(pattern, name):
+            continue
+        found[name], _ = least(run, 1)
+        for _ in range(min(20, int(0.5 / found[name]))):
+            found[name] = min(found[name], least(run, 1)[0])
+    return found
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--against", type=Path, metavar="PYTHON", help="Python of another version")
+    parser.add_argument("--rounds", type=int, default=3, help="turns of both versions")
+    parser.add_argument("--only", default="", metavar="PATTERN", help="rows whose names have it")
+    parser.add_argument("--plain", action="store_true", help="times of this version alone, as json")
+    given = parser.parse_args()
+    if given.plain:
+        print(json.dumps(times(given.only)))
+        return
+    versions = [Path(sys.executable), *([given.against] if given.against else [])]
+    best: list[dict[str, float]] = [{} for _ in versions]
+    for _ in range(given.rounds):
+        for python, found in zip(versions, best, strict=True):
+            command = [str(python), __file__, "--plain", "--only", given.only]
+            text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+            for name, seconds in json.loads(text).items():
+                found[name] = min(seconds, found.get(name, seconds))
+    others = {n: least(run, 1)[0] for n, run in opensees().items() if re.search(given.only, n)}
+    table = Table(box=box.SIMPLE_HEAD)
+    for heading in ("work", "ms", "of the other version", "OpenSees over rbsdem"):
+        table.add_column(heading, justify="left" if heading == "work" else "right")
+    for name, seconds in best[0].items():
+        before = f"{seconds / best[1][name]:.2f}" if given.against else ""
+        ratio = f"{others[name] / seconds:.1f}" if name in others else ""
+        table.add_row(name, f"{1e3 * seconds:.3g}", before, ratio)
+    Console(width=100).print(table)
+
+
+if __name__ == "__main__":
+    main()
