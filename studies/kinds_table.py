@@ -174,10 +174,11 @@ def chosen(cases: list[fit_model.Case], series: np.ndarray) -> list[tuple[str, b
 
 def without(search: fit_model.Search, scores: list[Any], every: list[int]) -> Callable[..., Any]:
     """Return a function that gives the places without some tests."""
+    slopes = search.slopes(search.start)
 
     def step(members: list[int]) -> np.ndarray:
         rest = [scores[i] for i in members]
-        matrix, gradient = search.normal(members, search.first, rest, search.start)
+        matrix, gradient = search.normal(members, slopes, rest, search.start)
         damped = matrix + fit_model.DAMPINGS[-1] * np.diag(np.diag(matrix))
         return -np.linalg.solve(damped, gradient)
 

@@ -159,7 +159,8 @@ def test_in_a_column_and_its_case_file(tmp_path):
     # Where y > 0 and its flange are in tension, and where y < 0 is.
     for force, section in ((loop.force.max(), TEE), (-loop.force.min(), TEE.mirrored)):
         peak = diagram(section, 50e3).events.peak.moment
-        assert 2.0 * force == pytest.approx(peak, rel=0.15)
+        # At 2 % bars have hardened less than at the peak of the diagram.
+        assert 2.0 * force == pytest.approx(peak, rel=0.2)
     text = column.to_namelist() + "&loading drive = 'displacement', values = 0.01 /\n"
     (tmp_path / "case.nml").write_text(text)
     assert rbsdem.read_case(tmp_path / "case.nml").column == column

@@ -491,7 +491,8 @@ def shear_spring(
     -------
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
-        (2004), which is that of a principal tension; then has `cracked_shear_stiffness`; yields
+        (2004), which is that of a principal tension; then has `cracked_shear_stiffness`, of a
+        column for what the strut of the axial load does not carry; yields
         near `rbsdem.section.strength.column_shear_strength`, of a wall near
         `rbsdem.section.strength.wall_shear_strength`; loses its force by the drift at axial
         failure of Elwood and Moehle (2005). A section that is not symmetric
@@ -523,6 +524,8 @@ def shear_spring(
         lasts = min(1.0, max(2.0 * ties / f_y, _FEWEST) ** 2)
         lasts /= max(bond_demand(section, span) / _USUAL_BOND, _LEAST_BOND)
         soonest = max(side.fastest for side in sides) / (stiffness / length * unit)
+        # In the slip that the ties would have if they carried the strut, too.
+        lasts *= sum(side.worn for side in sides) / sum(side.line["d_y"] for side in sides)
         lambda_s = least_endurance(given.shear_endurance * lasts, soonest)
     lambda_h = s_min = 0.0
     if joint is not None and given.shear_decay > 0.0:
@@ -572,6 +575,8 @@ class _Side:
         The backbone, by the names of `Pinching`.
     ties, strut, crushed : float
         What the ties carry, and the strut of the axial load; f'c b d [N].
+    worn : float
+        Slip at yield if the ties carried the strut, too [m].
     fastest : float
         f_cap^2 (1 + d_cap/d_pc) [N2], which bounds how fast the strength may fall.
     limits : dict of str to (float, float)
@@ -582,6 +587,7 @@ class _Side:
     ties: float
     strut: float
     crushed: float
+    worn: float
     fastest: float
     limits: dict[str, tuple[float, float]]
 
@@ -613,10 +619,13 @@ def _side(
     cracked = cracked_shear_stiffness(section) / length
     cracked = min(max(cracked, _LEAST * whole), 0.9 * whole)
     d_c = f_c / whole
-    d_y = d_c + (f_y - f_c) / cracked
+    # Cracks open with what the ties carry; in a column the strut of the axial load needs none.
+    rise, strutted = f_y - f_c, 0.0 if wall else given.shear_strength * strut
+    slip = max((rise - strutted) / cracked, rise / (0.9 * whole))
+    d_y = d_c + slip
     f_cap = _RISES * f_y
     # Behind yield it may not go up steeper than before.
-    least_rise = 1.01 * (f_cap - f_y) / cracked
+    least_rise = 1.01 * (f_cap - f_y) / rise * slip
     d_cap = d_y + max(given.shear_cap * length, least_rise)
     # The column has lost its axial load, and with it the friction in the crack.
     lost = axial_failure_drift(section, axial_load) * length
@@ -630,6 +639,7 @@ def _side(
         (_CIRCLE if is_round else 1.0) * by_ties,
         strut,
         sizes.fc * sizes.width * sizes.d,
+        d_c + rise / cracked,
         f_cap**2 * (1.0 + d_cap / d_pc),
         {
             "shear_strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
