@@ -135,6 +135,10 @@ def test_a_building_is_that_of_its_case_file(text, tmp_path):
     report = report_of_page(page, asked)["text"]
     assert "Target displacement" in report
     assert worst["member"] in report
+    # In the units of the page, beside which a report has mm and kN
+    american = report_of_page(page, asked | {"units": "in"})["text"]
+    assert re.search(r"\bkip\b", american)
+    assert not re.search(r"\bkip\b", report)
 
 
 def test_what_the_page_has_no_field_for_stays_in_its_case():

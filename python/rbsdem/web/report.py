@@ -70,6 +70,8 @@ _STOREYS = (
     "4.4.2.2)."
 )
 _FITTED = "theta is the median of the fitted curve, beta its dispersion; sample medians differ."
+#: Units of the page, by their names there.
+_OF_PAGE = {"mm": ("mm", "kN"), "m": ("m", "kN"), "si": ("m", "N"), "in": ("in", "kip")}
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000
 
@@ -296,14 +298,15 @@ def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]
     found = answers.solved(cases[0])
     if found.case is None or found.result is None:
         return {"faults": found.faults}
-    made: list[Sheet] = []
-    with suppress(RbsdemError):
-        outcome = judged(found.case, found.result)
-        for assessment in outcome.assessments[:1]:
-            made = list(_of_assessment(assessment, outcome.target))
     title = title_of(cases[0]) or "Frame"
-    shown = [one for one in made or sheets_of(found.result) if one.figures or not one.beside]
-    html = _head(title, "", "", None) + "".join(map(_html, shown))
+    with paper_units(*_OF_PAGE.get(str(asked.get("units")), ("mm", "kN"))):
+        made: list[Sheet] = []
+        with suppress(RbsdemError):
+            outcome = judged(found.case, found.result)
+            for assessment in outcome.assessments[:1]:
+                made = list(_of_assessment(assessment, outcome.target))
+        shown = [one for one in made or sheets_of(found.result) if one.figures or not one.beside]
+        html = _head(title, "", "", None) + "".join(map(_html, shown))
     page = one_file(title, None, (), (html, ""))
     return {"text": page, "name": "report"}
 
