@@ -75,7 +75,7 @@ def cycled(family: str, frames: int) -> None:
     for _ in range(frames):
         made = frame(rng, family)
         run = ended(lambda made=made: rbsdem.cyclic(made, displacement=drifts(rng, made)))
-        size = max(float(run.summary["peak_force"]), 1.0)
+        size = np.abs(run.force).max(initial=1.0)
         print(*(f"{value:.6f}" for value in run.force / size + 0.0))
 
 
