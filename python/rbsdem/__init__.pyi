@@ -48,6 +48,7 @@ from rbsdem.run.response import pushover as pushover
 from rbsdem.run.response import time_history as time_history
 from rbsdem.run.solver import Solver as Solver
 from rbsdem.section.frame import Frame as Frame
+from rbsdem.section.plan import Building as Building
 from rbsdem.web.report import report as report
 
 __version__: str

@@ -26,7 +26,7 @@ module rbs_bindings_evaluate
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_spring_location, only: flexure, axial, layer
-   use rbs_structure_structure, only: structure_type, horizontal
+   use rbs_structure_structure, only: structure_type, horizontal, sideways
    use rbs_version, only: version
    implicit none
    private
@@ -177,7 +177,7 @@ contains
       subroutine answer_modes()
          type(modes_type) :: modes
          integer, allocatable :: count
-         integer :: i, j
+         integer :: i, j, floors
 
          ! Not allocated, it is an argument that is left out.
          if (size(request%array('count')) > 0) count = request%whole('count')
@@ -189,16 +189,28 @@ contains
             answer%rows = modes%shapes
             return
          end if
-         ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode.
-         allocate (answer%rows(3*frame%n + 1, size(modes%omega)), source=0.0_c_double)
+         ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode;
+         ! of a building that along y, the rotary inertia, and U, V and Theta of the floors.
+         floors = merge(frame%storeys, 0, frame%plan%is_given())
+         allocate (answer%rows(3*frame%n + 1 + merge(2, 0, floors > 0) + 3*floors, size(modes%omega)), &
+                   source=0.0_c_double)
          do i = 1, frame%n
-            do j = 1, 3
+            answer%rows(i, :) = [(frame%along_x(i, modes%shapes(:, j)), j=1, size(modes%omega))]
+            do j = 2, 3
                if (frame%number(j, i) == 0) cycle
                answer%rows((j - 1)*frame%n + i, :) = modes%shapes(frame%number(j, i), :)
             end do
          end do
          answer%rows(3*frame%n + 1, :) = [(frame%work_of(horizontal, modes%shapes(:, i))**2, &
                                            i=1, size(modes%omega))]
+         if (floors == 0) return
+         do i = 1, size(modes%omega)
+            associate (row => answer%rows(3*frame%n + 2:, i), shape => modes%shapes(:, i))
+               row(1) = frame%work_of(sideways, shape)**2
+               row(2) = frame%plan%turning_momentum(frame%inertias, shape)**2
+               row(3:) = [(frame%plan%motion(j, shape), j=1, floors)]
+            end associate
+         end do
       end subroutine answer_modes
 
       subroutine answer_matrices(paper)

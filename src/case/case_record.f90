@@ -18,7 +18,7 @@ module rbs_case_case_record
    public :: case_record, most_loadings
 
    !> A force, a ground motion in two directions and an axial load may act together.
-   integer, parameter :: most_loadings = 4
+   integer, parameter :: most_loadings = 5
 
    !> Names of the units of a case.
    type, extends(visited_record) :: units_record

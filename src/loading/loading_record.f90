@@ -16,7 +16,7 @@ module rbs_loading_loading_record
    public :: loading_record, drive_names, units_of
 
    !> A displacement is no action in time; the others are its signals.
-   character(len=21), parameter :: drive_names(5) = [character(len=21) :: 'displacement', signal_names]
+   character(len=21), parameter :: drive_names(6) = [character(len=21) :: 'displacement', signal_names]
    character(len=8), parameter :: source_names(3) = ['file    ', 'protocol', 'values  ']
 
    !> Most values of one loading in a case file; longer histories are read from files.
@@ -25,8 +25,9 @@ module rbs_loading_loading_record
    !> One loading of a case.
    type, extends(visited_record) :: loading_record
       !> The prescribed quantity, one of `drive_names`: displacement of the top [m], lateral force at the top
-      !> [N], acceleration of the ground, horizontal or vertical (upward positive) [m/s2], or axial load at
-      !> the top in place of the constant one, compression positive [N]
+      !> [N], acceleration of the ground, horizontal or vertical (upward positive) [m/s2], axial load at
+      !> the top in place of the constant one, compression positive [N], or acceleration of the ground along
+      !> y of a building [m/s2]
       character(len=24) :: drive = ''
       !> One of `source_names`
       character(len=16) :: source = ''
@@ -59,7 +60,8 @@ contains
       type(key_visitor), intent(inout) :: v
 
       call v%word('drive', self%drive, 'what is prescribed', &
-                  'displacement force ground_acceleration vertical_acceleration axial_load')
+                  'displacement force ground_acceleration vertical_acceleration axial_load '// &
+                  'ground_acceleration_y')
       call v%word('source', self%source, 'where the values come from; without it from what is given', &
                   'file protocol values')
       call v%long_text('file', self%file, 'path of a history, from the folder of the case')

@@ -2,12 +2,13 @@
 module rbs_loading_loads
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
-   use rbs_structure_structure, only: lateral, horizontal, vertical, top_axial, signals, signal_names
+   use rbs_structure_structure, only: lateral, horizontal, vertical, top_axial, sideways, signals, &
+                                      signal_names
    implicit none
    private
 
    public :: loads_type
-   public :: lateral, horizontal, vertical, top_axial, signals, signal_names
+   public :: lateral, horizontal, vertical, top_axial, sideways, signals, signal_names
 
    type :: loads_type
       !> Signals, in the order of `lateral` and so on [N, m/s2, m/s2, N]; one without points is zero

@@ -8,7 +8,7 @@ module rbs_output_channels
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, row_contents, response_type
    use rbs_structure_column_column, only: column_channel
-   use rbs_structure_frame_frame, only: frame_channel
+   use rbs_structure_frame_frame, only: frame_channel, plan_channel
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -95,7 +95,7 @@ contains
    end subroutine get_labels
 
    !> Names of the channels in their order, each with the number of its values, or 0 for one that has none.
-   pure character(len=512) function names(self) result(text)
+   pure character(len=1024) function names(self) result(text)
       class(channel_list), intent(in) :: self
       integer :: i
 
@@ -108,8 +108,9 @@ contains
    !> All names that rows may hold, with their units, with semicolons between.
    pure function channel_units() result(text)
       type(channel_type), parameter :: channel(2 + size(common_channel) + size(column_channel) &
-                                               + size(frame_channel)) = &
-                                       [first_channel, common_channel, column_channel, frame_channel]
+                                               + size(frame_channel) + size(plan_channel)) = &
+                                       [first_channel, common_channel, column_channel, frame_channel, &
+                                        plan_channel]
       character(len=size(channel)*(len(channel%name) + len(channel%unit) + 2)) :: text
       integer :: i
 

@@ -16,7 +16,7 @@ module rbs_solve_end_state
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_location, only: spring_name
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -49,7 +49,7 @@ module rbs_solve_end_state
       !> The clock: where its counting began, where it is now, and the way between as the steps counted it [s]
       real(wp) :: begin = 0.0_wp, clock = 0.0_wp, time = 0.0_wp
       !> Loads at the end; the step [s], steps from `origin` where they do not follow the times of the loading
-      real(wp) :: load(4) = 0.0_wp, dt = 0.0_wp, origin = 0.0_wp
+      real(wp) :: load(signals) = 0.0_wp, dt = 0.0_wp, origin = 0.0_wp
       integer :: offset = 0
       !> The method, and the setting that it has; those of another need not match
       integer :: method = 0

@@ -8,7 +8,7 @@ module rbs_structure_channel
 
    !> A quantity of a row.
    type :: channel_type
-      character(len=19) :: name = ''
+      character(len=21) :: name = ''
       !> SI
       character(len=4) :: unit = ''
       !> Number of values, 0 for one that has no number; the number of the first one
@@ -37,6 +37,8 @@ module rbs_structure_channel
       !> structure along x [N]; velocities of the springs, forces with those of the damping and, where the
       !> rows ask for them, accelerations (springs)
       real(wp) :: ground = 0.0_wp, base_shear = 0.0_wp
+      !> Of a building the acceleration of the ground along y [m/s2]
+      real(wp) :: ground_y = 0.0_wp
       real(wp), allocatable :: v(:), f(:), a(:)
    end type response_type
 

@@ -22,16 +22,17 @@ module rbs_structure_structure
    public :: structure_type, motion_result, load_pattern, unknown_group, accelerate_unknowns, &
              power_of_patterns
    public :: small, pdelta, finite
-   public :: lateral, horizontal, vertical, top_axial, signals, signal_names
+   public :: lateral, horizontal, vertical, top_axial, sideways, signals, signal_names
 
    !> Levels of kinematics.
    integer, parameter :: small = 1, pdelta = 2, finite = 3
 
    !> Signals of the loads: lateral force [N], acceleration of the ground to +x and upward [m/s2], axial load
-   !> besides the constant one, compression positive [N].
-   integer, parameter :: lateral = 1, horizontal = 2, vertical = 3, top_axial = 4, signals = 4
+   !> besides the constant one, compression positive [N]; acceleration of the ground along y of a building, to
+   !> whose x the one to +x is [m/s2].
+   integer, parameter :: lateral = 1, horizontal = 2, vertical = 3, top_axial = 4, sideways = 5, signals = 5
    character(len=21), parameter :: signal_names(signals) = [character(len=21) :: &
-      'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load']
+      'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load', 'ground_acceleration_y']
 
    !> Forces on the unknowns per unit of a signal.
    type :: load_pattern
@@ -728,8 +729,8 @@ contains
       real(wp), intent(inout), contiguous :: g(:)
       integer :: i, j
 
-      do j = horizontal, vertical
-         if (.not. abs(load(j)) > 0.0_wp) cycle
+      do j = horizontal, sideways
+         if (j == top_axial .or. .not. abs(load(j)) > 0.0_wp) cycle
          associate (pattern => self%pattern(j))
             do i = pattern%first, pattern%last
                g(i) = g(i) + pattern%force(i)*load(j)

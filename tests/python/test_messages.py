@@ -105,6 +105,7 @@ FRAMED = """\
 INFILL = "&infill name = 'I', thickness = 0.2, fm = 2e6 /\n&infill_of bay = 1, kind = 'I' /\n"
 LOSS = "&loss member = 'M' /\n"
 NODE_LOAD = "&node_load line = 1, floor = 1, load = 1e3 /\n"
+PLANE = "&plane name = 'x-1' /\n"
 STRIP = "rule = 'concrete', k = 2e9, f_peak = 6e5, d_peak = 6e-4, k_soft = 4e7"
 LAYER_SPRINGS = [f"id = 1, {STRIP}", "id = 2, rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 0"]
 #: A layered joint whose bars do not harden.
@@ -422,9 +423,9 @@ def test_a_key_refuses_what_it_cannot_take(folder, case_text, group):
         text = case_text(**LAYERED, layer_spring=LAYER_SPRINGS)
     elif group in DRAWN_OF:
         text = rbsdem.section.column(DRAWN_OF[group], 3.0, axial_load=1e6).to_namelist() + LOADING
-    elif f"&{group} " not in text and f"&{group} " in FRAMED + LOSS + INFILL + NODE_LOAD:
+    elif f"&{group} " not in text and f"&{group} " in FRAMED + LOSS + INFILL + NODE_LOAD + PLANE:
         text = FRAMED + LOSS * (group == "loss") + INFILL * ("infill" in group) + LOADING
-        text += NODE_LOAD * (group == "node_load")
+        text += NODE_LOAD * (group == "node_load") + PLANE * (group == "plane")
     elif f"&{group} " not in text and f"&{group} " in DRAWN:
         text = DRAWN
     for key in KEYS["groups"][group]:

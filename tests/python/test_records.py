@@ -120,9 +120,11 @@ def test_every_field_of_a_case_counts_for_equality():
     changes = {
         "title": "pulled", "column": OPEN, "method": "auto", "time": CASE.time + 1.0,
         "displacement": -PATH, "force": PATH, "ground_acceleration": PATH,
-        "vertical_acceleration": PATH, "axial_load": PATH, "settings": {},
+        "vertical_acceleration": PATH, "axial_load": PATH, "ground_acceleration_y": PATH,
+        "settings": {},
         "target": {"method": "en_1998"}, "records": {"folder": "motions"},
-        "assess": [{"code": "asce_41"}], "files": {"file": "rows.csv"},
+        "assess": [{"code": "asce_41"}],
+        "limit": [{"code": "asce_41"}], "files": {"file": "rows.csv"},
     }  # fmt: skip
     assert set(changes) == {field.name for field in fields(CASE)}
     for name, value in changes.items():

@@ -269,7 +269,8 @@ class FrameNode:
             support = _arguments.choice(self.support, "FrameNode: support", _SUPPORTS)
             object.__setattr__(self, "support", support)
 
-    def _groups(self) -> Iterator[_core.Statement]:
+    def _groups(self, **more: str | None) -> Iterator[_core.Statement]:
+        """Yield the groups of a case file; `more` are names that a building gives it."""
         values = {
             own.name: getattr(self, own.name) or None
             for own in fields(self)
@@ -278,7 +279,8 @@ class FrameNode:
         for name in ("name", "moves_with"):
             if values[name]:
                 values[name] = _core.Text(values[name])
-        yield _core.group("node", values | {"x": self.x, "y": self.y, "floor": self.floor})
+        names = {name: _core.Text(value) if value else None for name, value in more.items()}
+        yield _core.group("node", values | {"x": self.x, "y": self.y, "floor": self.floor} | names)
         for group in _PLACES:
             spring = getattr(self, group)
             if spring is not None:
@@ -313,7 +315,7 @@ class Member:
     def __post_init__(self) -> None:
         _arguments.convert(self, "Member")
 
-    def _group(self, kind: str) -> _core.Statement:
+    def _group(self, kind: str, axial_of: str | None = None) -> _core.Statement:
         values = {
             "name": _core.Text(self.name),
             "from": _core.Text(self.start),
@@ -322,6 +324,7 @@ class Member:
             "rigid_from": float(self.rigid_end[0]) or None,
             "rigid_to": float(self.rigid_end[1]) or None,
             "load": self.load or None,
+            "axial_of": _core.Text(axial_of) if axial_of else None,
         }
         return _core.group("member", values)
 

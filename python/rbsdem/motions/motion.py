@@ -323,7 +323,7 @@ def _integral(values: Array, dt: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(0.5 * dt * (values[:-1] + values[1:]))])
 
 
-_OF_THE_GROUND = ("ground_acceleration", "vertical_acceleration")
+_OF_THE_GROUND = ("ground_acceleration", "vertical_acceleration", "ground_acceleration_y")
 
 
 def acting(

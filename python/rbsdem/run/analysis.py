@@ -13,6 +13,7 @@ from rbsdem._types import Array
 from rbsdem.errors import warn
 from rbsdem.model.column import Column
 from rbsdem.section.frame import Frame, Structure, checked_structure
+from rbsdem.section.plan import Building
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,68 @@ class FrameModes(Tabular):
         return text_table(self.to_pandas())
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class BuildingModes(Tabular):
+    """Natural modes of a building before anything yields, under its dead load.
+
+    Attributes
+    ----------
+    omega, frequency, period : ndarray, shape (count,)
+        Circular frequencies [rad/s], frequencies [Hz] and periods [s], the lowest first.
+    floor_x, floor_y, floor_rotation : ndarray, shape (floors, count)
+        Shapes of the floors at their centres of mass, with unit modal mass.
+    x, y, node_rotation : ndarray, shape (nodes, count)
+        Shapes of the nodes in their planes.
+    participation_x, participation_y, participation_rotation : ndarray, shape (count,)
+        Shares of the masses, and of the rotary inertia, of the floors.
+    building : Building
+        The building.
+    """
+
+    omega: Array
+    frequency: Array
+    period: Array
+    floor_x: Array
+    floor_y: Array
+    floor_rotation: Array
+    x: Array
+    y: Array
+    node_rotation: Array
+    participation_x: Array
+    participation_y: Array
+    participation_rotation: Array
+    building: Building
+    _columns: ClassVar[tuple[str, ...]] = (
+        *("frequency Hz", "period s", "participation_x", "participation_y"),
+        "participation_rotation",
+    )
+
+    def __str__(self) -> str:
+        return text_table(self.to_pandas())
+
+
+def _building_modes(building: Building, count: int | None) -> BuildingModes:
+    answer = _core.evaluate("modes", made=building._made, count=count)
+    omega, floors = answer.values[1:], len(building.storey_heights)
+    x, y, rotation, mass, moved = np.split(answer.rows.T, np.cumsum([building.n] * 3 + [3]))
+    whole = building.plan_mass.sum() + sum(node.mass for node in building.nodes if node.floor)
+    along_x, along_y, turning = (
+        own / (total or 1.0)
+        for own, total in zip(mass, (whole, whole, building.inertia.sum()), strict=True)
+    )
+    # U, V and Theta of each floor
+    u, v, turned = moved.reshape(floors, 3, -1).transpose(1, 0, 2)
+    return BuildingModes(
+        omega,
+        omega / (2 * np.pi),
+        2 * np.pi / omega,
+        *(u, v, turned),
+        *(x, y, rotation),
+        *(along_x, along_y, turning),
+        building,
+    )
+
+
 def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
     answer = _core.evaluate("modes", made=frame._made, count=count)
     omega = answer.values[1:]
@@ -107,8 +170,12 @@ def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
 @overload
 def modes(column: Column, count: int | None = None) -> Modes: ...
 @overload
+def modes(  # type: ignore[overload-overlap]
+    column: Building, count: int | None = None
+) -> BuildingModes: ...
+@overload
 def modes(column: Frame, count: int | None = None) -> FrameModes: ...
-def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
+def modes(column: Structure, count: int | None = None) -> Modes | FrameModes | BuildingModes:
     """Return natural frequencies, mode shapes and the stable step of RK4.
 
     Parameters
@@ -132,6 +199,8 @@ def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
     """
     if count is not None:
         count = _arguments.integer(count, "count")
+    if isinstance(column, Building):
+        return _building_modes(column, count)
     if isinstance(column, Frame):
         return _frame_modes(column, count)
     answer = _core.evaluate("modes", made=checked_structure(column)._made, count=count)

@@ -19,9 +19,11 @@ from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import SPRING_GROUPS, Column, Damping, Footing, notes_off
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.column_result import Result
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.groups import (
+    building_of,
     drawing_of,
     drawn_column,
     frame_of,
@@ -32,10 +34,14 @@ from rbsdem.run.response import cyclic, time_history
 from rbsdem.run.rows import FORMAT, FORMAT_VERSION, SAVED, Rows, check_ending, same
 from rbsdem.run.solver import Solver
 from rbsdem.section.frame import Frame, Structure
+from rbsdem.section.plan import Building
 
 #: Arguments of analyses that no case file has.
 _NO_SETTINGS = ("initial", "corners", "progress")
-_DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
+_DRIVES = (
+    *("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load"),
+    "ground_acceleration_y",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +65,8 @@ class Case:
         Acceleration of the ground to +x and upward [m/s2].
     axial_load : ndarray, shape (m,), or None
         Axial load at the top in place of that of the column [N].
+    ground_acceleration_y : ndarray, shape (m,), or None
+        Acceleration of the ground along y of a building [m/s2].
     settings : dict
         The settings of the analysis that were given, as keywords of `cyclic` or `time_history`: dt,
         events, tolerance, rho_infinity, collapse_drift, allow_unstable, max_seconds, every,
@@ -86,6 +94,7 @@ class Case:
     assess: list[dict[str, Any]] = field(default_factory=list)
     limit: list[dict[str, Any]] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
+    ground_acceleration_y: Array | None = None
 
     @property
     def solver(self) -> Solver:
@@ -101,7 +110,9 @@ class Case:
         given = {name: getattr(self, name) for name in _DRIVES}
         return {name: values for name, values in given.items() if values is not None}
 
-    def run(self, column: Structure | None = None, **changes: Any) -> Result | FrameResult:
+    def run(
+        self, column: Structure | None = None, **changes: Any
+    ) -> Result | FrameResult | BuildingResult:
         """Solve the case as the executable does.
 
         Parameters
@@ -125,7 +136,7 @@ class Case:
         given: dict[str, Any] = self.loads | self.settings
         try:
             if self.method == "static":
-                result: Result | FrameResult = cyclic(column, **(given | changes))
+                result: Result | FrameResult | BuildingResult = cyclic(column, **(given | changes))
             else:
                 given |= {"time": self.time, "method": self.method}
                 result = time_history(column, **(given | changes))
@@ -227,7 +238,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
     if "frame" in groups:
-        frame = frame_of(groups, drawings)
+        frame = building_of(groups) if "plane" in groups else frame_of(groups, drawings)
         return _case_of(frame, found, settings, time, values, acting, more)
     column = _core.typed("column", found["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))
@@ -334,7 +345,7 @@ _DAMAGED = (
 )  # fmt: skip
 
 
-def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
+def read_result(path: str | os.PathLike[str]) -> Result | FrameResult | BuildingResult:
     """Read a result that `Result.save` or `FrameResult.save` wrote.
 
     Parameters
@@ -392,7 +403,7 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
     return about, arrays
 
 
-def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResult:
+def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResult | BuildingResult:
     with notes_off():
         # Losses at a time are refused in a static case.
         method = "auto" if about["summary"]["analysis"] == "dynamic" else "static"
@@ -404,6 +415,6 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResu
                 drawn = case_of_text(about["drawing"] + analysis).column
                 structure = drawn if drawn == structure else structure
     own = {name: _together(about[name], arrays) for name in SAVED}
-    return (FrameResult if isinstance(structure, Frame) else Result)(
-        structure=structure, case=case, **own
-    )
+    kind: Any = FrameResult if isinstance(structure, Frame) else Result
+    kind = BuildingResult if isinstance(structure, Building) else kind
+    return kind(structure=structure, case=case, **own)  # type: ignore[no-any-return]

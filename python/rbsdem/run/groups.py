@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
+import numpy as np
+
 from rbsdem import _core
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import SPRING_GROUPS, Column, Damping
+from rbsdem.model.column import SPRING_GROUPS, Column, Damping, notes_off
 from rbsdem.model.frame import FrameMember, FrameNode, Member, places_of, with_rigid_end
 from rbsdem.model.materials import Bars, Concrete, Lap, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
@@ -19,6 +21,7 @@ from rbsdem.section.frame import Frame
 from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
+from rbsdem.section.plan import Building
 
 Groups = Mapping[str, list[dict[str, Any]]]
 """The groups of a case file with their values by name; those of one name in their order."""
@@ -330,6 +333,72 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
         made.pop("storeys", ()), made.pop("bays", None), columns=columns, beams=beams,
         dead_load=dead, live_load=live, node_load=weights, infills=infilled, **drawn, **made,
     )  # fmt: skip
+
+
+def building_of(groups: Groups) -> Building:
+    """Return the building of the groups of a case, whose frames have the nodes of its planes."""
+    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
+    frame = _core.typed("frame", groups["frame"][-1])
+    damping = groups.get("damping")
+    losses = {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])}
+    nodes = {given["name"]: given for given in groups.get("node", [])}
+    in_plane = {name: given["plane"] for name, given in nodes.items()}
+    leaders: dict[tuple[str, int], str] = {}
+    own: dict[str, list[FrameNode]] = {}
+    for node in _nodes(groups, 0):
+        plane = in_plane[node.name]
+        name = node.name.removeprefix(f"{plane}:")
+        # Alone, too, its floors are rigid.
+        first = leaders.setdefault((plane, node.floor or 0), name)
+        tied = first if node.floor and first != name else ""
+        own.setdefault(plane, []).append(replace(node, name=name, moves_with=tied))
+    members: dict[str, list[Member]] = {}
+    for given in groups.get("member", []):
+        plane = in_plane[given["from"]]
+        cut = {key: given[key].removeprefix(f"{plane}:") for key in ("name", "from", "to")}
+        members.setdefault(plane, []).append(_member(given | cut, kinds[given["kind"]]))
+    planes = [_core.typed("plane", given) for given in groups["plane"]]
+    count = max(node.floor or 0 for one in own.values() for node in one)
+    floors: list[dict[str, float]] = [{} for _ in range(count)]
+    for given in groups.get("floor", []):
+        for i, floor in enumerate(floors):
+            if given.get("floor", 0) in (0, i + 1):
+                floor.update(given)
+    values = {
+        name: [floor.get(name, 0.0) for floor in floors]
+        for name in ("mass", "inertia", "centre_x", "centre_y")
+    }
+    frames = []
+    with notes_off():
+        for plane in planes:
+            start = f"{plane['name']}:"
+            lost = {k.removeprefix(start): v for k, v in losses.items() if k.startswith(start)}
+            made = Frame(
+                nodes=own[plane["name"]], members=members[plane["name"]], losses=lost or None
+            )
+            more = (plane["along"],) if "along" in plane else ()
+            frames.append((made, plane.get("angle", 0.0), plane.get("arm", 0.0), *more))
+    building = Building(
+        frames,
+        names=[plane["name"] for plane in planes],
+        centres=np.column_stack((values["centre_x"], values["centre_y"])),
+        floor_mass=values["mass"],
+        inertia=values["inertia"],
+        damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
+        **frame,
+    )
+    rises = {name: given.get("rises_with", "") for name, given in nodes.items()}
+    axial = {own["name"]: own.get("axial_of", "") for own in groups.get("member", [])}
+    for key, given, found in (
+        ("rises_with", rises, building.rises), ("axial_of", axial, building.axial_of)
+    ):  # fmt: skip
+        for name, other in given.items():
+            if other != found.get(name, ""):
+                raise InputError(
+                    f"{key} of {name!r} is {other!r}, and by the places of the planes it is "
+                    f"{found.get(name, '')!r}; correct arm and along of each &plane"
+                )
+    return building
 
 
 def _drawn_section(groups: Groups) -> Section:

@@ -13,14 +13,16 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column
+from rbsdem.model.column import NOTES_ON, Column
 from rbsdem.motions.motion import GroundMotion, acting
+from rbsdem.run.building_result import BuildingResult, both_planes_note
 from rbsdem.run.column_result import Result
 from rbsdem.run.frame_result import FrameResult, shear_span_note, span_note
 from rbsdem.run.rows import Rows
 from rbsdem.run.solve import HasEndState, follow, march, tell
 from rbsdem.run.solver import Solver, checked_solver
 from rbsdem.section.frame import Frame, Structure, checked_structure
+from rbsdem.section.plan import Building
 
 P = ParamSpec("P")
 
@@ -31,11 +33,15 @@ class Analysis(Protocol[P]):
     @overload
     def __call__(self, column: Column, *arguments: P.args, **options: P.kwargs) -> Result: ...
     @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, column: Building, *arguments: P.args, **options: P.kwargs
+    ) -> BuildingResult: ...
+    @overload
     def __call__(self, column: Frame, *arguments: P.args, **options: P.kwargs) -> FrameResult: ...
     @overload
     def __call__(
         self, column: Structure, *arguments: P.args, **options: P.kwargs
-    ) -> Result | FrameResult: ...
+    ) -> Result | FrameResult | BuildingResult: ...
 
 
 def _typed(run: Callable[Concatenate[Structure, P], Any]) -> Analysis[P]:
@@ -158,13 +164,14 @@ def reached_force(column: Structure, displacement: ArrayLike) -> tuple[Array, So
 @_typed
 def time_history(
     column: Structure,
-    time: ArrayLike | GroundMotion | None = None,
+    time: ArrayLike | GroundMotion | tuple[GroundMotion, GroundMotion] | None = None,
     *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | GroundMotion | None = None,
     initial: Mapping[str, ArrayLike] | Rows | str | os.PathLike[str] | None = None,
     vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
+    ground_acceleration_y: ArrayLike | GroundMotion | None = None,
     collapse_drift: float | None = None,
     every: int | None = None,
     openings: bool = False,
@@ -179,7 +186,8 @@ def time_history(
         The structure; a frame needs an implicit method ("newmark", "hht", "generalised_alpha").
     time : array_like of shape (m,), or GroundMotion, optional
         Times of the loading, ascending [s]; two are enough for a free vibration. A `GroundMotion`
-        brings its own, and may stand here: ``time_history(column, motion)``.
+        brings its own, and may stand here: ``time_history(column, motion)``; two of a building
+        are along x and y: ``time_history(building, (east_west, north_south))``.
     force : array_like, shape (m,), optional
         Lateral force at the top [N], linear between the times.
     ground_acceleration : array_like of shape (m,), or GroundMotion, optional
@@ -197,6 +205,8 @@ def time_history(
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
         Axial load at the top [N], compression positive, in place of the constant one of the column.
+    ground_acceleration_y : array_like of shape (m,), or GroundMotion, optional
+        Of a building acceleration of the ground along y [m/s2]; `ground_acceleration` is along x.
     collapse_drift : float, optional
         Drift at which the structure counts as collapsed, of a storey of a frame
         (`Frame.collapse`), of a column displacement of the top over the height: the analysis ends
@@ -242,7 +252,16 @@ def time_history(
         "ground_acceleration": ground_acceleration,
         "vertical_acceleration": vertical_acceleration,
         "axial_load": axial_load,
+        "ground_acceleration_y": ground_acceleration_y,
     }
+    if isinstance(time, tuple) and len(time) == 2 and isinstance(time[0], GroundMotion):
+        if ground_acceleration is not None or ground_acceleration_y is not None:
+            raise InputError(
+                "time_history: a pair of GroundMotion stands in the place of time, and "
+                "ground_acceleration is given too; give one of them"
+            )
+        given |= {"ground_acceleration": time[0], "ground_acceleration_y": time[1]}
+        time = None
     time, arrays = acting(time, given, "time_history")
     loads = {name: _arguments.vector(values, name) for name, values in arrays.items()}
     for name, values in loads.items():
@@ -276,20 +295,25 @@ def _return(
     about: dict[str, str],
     call: dict[str, Any],
     reached: Array | None = None,
-) -> Result | FrameResult:
+) -> Result | FrameResult | BuildingResult:
     arrays, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
     if "lost_joint" in summary and isinstance(column, Column):
         summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
-    kind = FrameResult if isinstance(column, Frame) else Result
-    result = kind(arrays, summary, column, given, state, reached)
+    kind: Any = FrameResult if isinstance(column, Frame) else Result
+    kind = BuildingResult if isinstance(column, Building) else kind
+    result: Result | FrameResult | BuildingResult = kind(
+        arrays, summary, column, given, state, reached
+    )
     if error is not None:
         error.result = result
         raise error
     told = [note]
-    if isinstance(result, FrameResult):
+    if isinstance(result, BuildingResult):
+        told.append(both_planes_note(result) if NOTES_ON.get() else "")
+    elif isinstance(result, FrameResult):
         told += [span_note(result), shear_span_note(result)]
     for text in told:
         if text:
@@ -308,6 +332,7 @@ def pushover(
     displacement: float | None = None,
     force: float | None = None,
     pattern: str | None = None,
+    direction: float | None = None,
     points: int = 100,
     initial: Any = None,
 ) -> Any:
@@ -322,6 +347,9 @@ def pushover(
         exactly one of them. Under a force a path ends where the structure can carry no more.
     pattern : str, optional
         Shares of the lateral load of a frame in place of its own, see `Frame`.
+    direction : float, optional
+        Direction of the lateral load on a building, from x towards y, in place of its own
+        [degrees].
     points : int, optional
         Rows at equal steps; there is one at each event in addition.
     initial : FrameResult, Result or path-like, optional
@@ -339,10 +367,7 @@ def pushover(
     said = [name for name, value in given.items() if value is not None]
     if len(said) != 1:
         raise InputError("pushover: give exactly one of drift, displacement and force")
-    if pattern is not None:
-        if not isinstance(structure, Frame):
-            raise InputError("pushover: pattern is for frames; a column is pushed at its top")
-        structure = replace(structure, pattern=pattern)  # type: ignore[arg-type]
+    structure = _pushed(structure, pattern, direction)
     far = _arguments.number(given[said[0]], f"pushover: {said[0]}", hint=" that is not 0")
     if far == 0:
         raise InputError(f"pushover: {said[0]} = 0 must be a finite number that is not 0")
@@ -376,6 +401,21 @@ def pushover(
     if reason:
         result.summary.update(status="ended", reason=reason)
     return result
+
+
+def _pushed(structure: Structure, pattern: str | None, direction: float | None) -> Structure:
+    """Return a structure with another pattern, or direction, of its lateral load."""
+    changes = {"pattern": pattern, "direction": direction}
+    changes = {name: value for name, value in changes.items() if value is not None}
+    if "direction" in changes and not isinstance(structure, Building):
+        raise InputError("pushover: direction is for buildings; a planar frame has one plane")
+    if not changes:
+        return structure
+    if not isinstance(structure, Frame):
+        raise InputError("pushover: pattern is for frames; a column is pushed at its top")
+    if isinstance(structure, Building):
+        return structure.changed(**changes)
+    return replace(structure, **changes)  # type: ignore[arg-type]
 
 
 def _strength_ends(displacement: Array, force: Array, side: float) -> float | None:

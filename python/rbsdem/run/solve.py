@@ -24,7 +24,10 @@ _DEFORMATIONS = ("slip", "rotation", "opening")
 _NONE = np.empty(0)
 _NONE.flags.writeable = False
 #: Histories of an analysis in time, by name.
-HISTORIES = ("force", "ground_acceleration", "vertical_acceleration", "axial_load")
+HISTORIES = (
+    *("force", "ground_acceleration", "vertical_acceleration", "axial_load"),
+    "ground_acceleration_y",
+)
 
 
 @runtime_checkable

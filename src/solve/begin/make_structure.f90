@@ -14,7 +14,7 @@ module rbs_solve_begin_make_structure
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_new_frame, only: new_frame
-   use rbs_structure_structure, only: structure_type, small, pdelta, lateral, horizontal
+   use rbs_structure_structure, only: structure_type, small, pdelta, lateral, horizontal, sideways
    implicit none
    private
 
@@ -74,7 +74,8 @@ contains
       call messages%raise(error)
       if (allocated(error)) return
       call new_frame(frame, case%parts%node, case%parts%member, &
-                     merge(pdelta, small, case%frame%kinematics == 'pdelta'), case%parts%top, &
+                     merge(pdelta, small, case%frame%kinematics == 'pdelta'), case%parts%plan, &
+                     case%parts%top, &
                      case%frame%control == 'y')
       frame%by_storeys = frame%storeys > 0 .and. case%frame%collapse == 'storey'
       associate (damping => case%column%damping)
@@ -99,7 +100,18 @@ contains
       if (allocated(error)) return
       associate (push => frame%pattern(lateral)%force)
          ! Heavy beams may swing upward before the frame sways.
-         i = maxloc([(abs(frame%work_of(horizontal, modes%shapes(:, j))), j=1, size(modes%omega))], dim=1)
+         associate (toward => frame%plan%direction)
+            i = maxloc([(abs(toward(1)*frame%work_of(horizontal, modes%shapes(:, j)) + &
+                             toward(2)*frame%work_of(sideways, modes%shapes(:, j))), &
+                         j=1, size(modes%omega))], dim=1)
+            if (frame%plan%is_given()) then
+               ! With its torque
+               push = frame%plan%on_floors(frame%inertias*modes%shapes(:, i))
+               push = -push/(toward(1)*frame%work_of(horizontal, modes%shapes(:, i)) + &
+                             toward(2)*frame%work_of(sideways, modes%shapes(:, i)))
+               return
+            end if
+         end associate
          push = -frame%pattern(horizontal)%force*modes%shapes(:, i)
          push = push/sum(push)
       end associate
@@ -158,6 +170,8 @@ contains
          at = findloc(frame%number, free)
          ! The beams of a node behind a panel
          if (at(2) == 0) at = [3, frame%part(free)]
+         ! A floor turns as a whole.
+         if (at(2) == 0) at(2) = 1
       end associate
       call fatal_error(error, bad_input, 'frame: it is a mechanism, '// &
                        'node '//trim(frame%node_name(at(2)))// &

@@ -39,6 +39,8 @@ module rbs_solve_static_path
    real(wp), parameter :: no_digits = 1.0e-3_wp
    !> Displacement, in shares of the height, and rotation by which stiff springs have forces and works.
    real(wp), parameter :: small_motion = 1.0e-6_wp
+   !> A displacement below this share of the height is round-off.
+   real(wp), parameter :: no_motion = 1.0e-12_wp
    !> Round-off of forces and works by the initial stiffness of the springs.
    real(wp), parameter :: digits = 1.0e-13_wp
 
@@ -486,7 +488,9 @@ contains
       class(static_path), intent(inout) :: self
 
       ! Pushed downward, a positive load goes with a negative displacement.
-      if (.not. abs(self%sense) > 0.0_wp) then
+      ! Within round-off of where it begins a path has no side yet.
+      if (.not. abs(self%sense) > 0.0_wp .and. abs(self%displacement - self%first_point(2)) > &
+          no_motion*self%structure%height) then
          self%sense = (self%force - self%first_point(1))*(self%displacement - self%first_point(2))
          if (abs(self%sense) > 0.0_wp) self%sense = sign(1.0_wp, self%sense)
       end if

@@ -13,7 +13,7 @@ module rbs_solve_time_implicit
    use rbs_solve_one_body_rk4_one_body, only: pdelta_moment_of
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
-   use rbs_loading_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal, sideways, signals
    use rbs_solve_time_motion, only: equation_of_motion
    use rbs_solve_time_newton, only: newton_stepper, progress
    use rbs_solve_time_state, only: state_type
@@ -355,8 +355,8 @@ contains
       call state%springs%joints%open_layers(self%step%q1)
       associate (motion => state%motion, h => self%h, load => self%load, &
                  mean => 0.5_wp*(state%load + self%load))
-         do i = lateral, horizontal
-            if (motion%acts(i)) then
+         do i = lateral, sideways
+            if (motion%acts(i) .and. any(i == [lateral, horizontal, sideways])) then
                self%of_loads = self%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
             end if
          end do
@@ -437,11 +437,11 @@ contains
 
    !> Vertical loads alone: their work is not that of a force which keeps its direction.
    pure function lifts(load)
-      real(wp), intent(in) :: load(4)
-      real(wp) :: lifts(4)
+      real(wp), intent(in) :: load(signals)
+      real(wp) :: lifts(signals)
 
       lifts = load
-      lifts(:horizontal) = 0.0_wp
+      lifts([lateral, horizontal, sideways]) = 0.0_wp
    end function lifts
 
    !> Save or restore the motion of the bodies at the start of a step.

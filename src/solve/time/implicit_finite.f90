@@ -17,7 +17,7 @@ module rbs_solve_time_implicit_finite
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_rates, add_joint_forces, joint_tangent, local
-   use rbs_loading_loads, only: lateral, horizontal, vertical
+   use rbs_loading_loads, only: lateral, horizontal, vertical, signals
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_implicit_balance, only: family_type
    use rbs_solve_time_newton, only: newton_stepper
@@ -354,7 +354,7 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in), contiguous :: q(:), v(:)
       !> Loads, and length of the step
-      real(wp), intent(in) :: load(4), h
+      real(wp), intent(in) :: load(signals), h
       real(wp), intent(out) :: g(:, 0:)
 
       call find_damping(self, state)
@@ -370,7 +370,7 @@ contains
    !> Forces of loads and joints on the bodies, as these are seen.
    subroutine find_balance(self, load, g)
       type(finite_stepper), intent(inout) :: self
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       real(wp), intent(out) :: g(:, 0:)
       real(wp) :: f(3), reach(2)
       integer :: i, n
@@ -401,7 +401,7 @@ contains
       type(finite_stepper), intent(in) :: self
       !> The top body
       type(turned_body), intent(in) :: top
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       !> Whether loads that have a potential count too
       logical, intent(in) :: constant
       real(wp), intent(inout) :: g(:, 0:)

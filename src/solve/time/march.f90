@@ -8,7 +8,7 @@ module rbs_solve_time_march
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: checkpoint_type
    use rbs_solve_task, only: task_type, many_unknowns
-   use rbs_loading_loads, only: loads_type, lateral, horizontal
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, sideways
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_monitor, only: response_monitor
@@ -195,6 +195,7 @@ contains
          response%displacement = state%motion%structure%top_displacement(state%q)
          response%force = state%load(lateral)
          response%ground = state%load(horizontal)
+         response%ground_y = state%load(sideways)
          if (.not. allocated(response%v)) then
             allocate (response%v, response%a, source=state%v)
             allocate (response%f(state%springs%count), source=0.0_wp)

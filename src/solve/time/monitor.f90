@@ -6,7 +6,7 @@ module rbs_solve_time_monitor
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_loading_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal, signals
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_motion, only: equation_of_motion, motion_result
    use rbs_structure_spring_location, only: shear, flexure, layer
@@ -80,7 +80,7 @@ contains
       type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp), intent(in) :: load(4), clock
+      real(wp), intent(in) :: load(signals), clock
       !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is monitored
@@ -133,7 +133,7 @@ contains
       type(spring_array), intent(in) :: springs
       !> Deformations and velocities (springs), loads
       real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       !> [s]
       real(wp), intent(in) :: clock
       real(wp) :: displacement, rotation, shear

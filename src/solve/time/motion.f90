@@ -26,7 +26,7 @@ module rbs_solve_time_motion
       type(column_type), pointer :: one_body => null()
       type(body_damping) :: damping
       !> Which of the loads act (see `rbs_loading_loads`), and whether axial forces vary
-      logical :: acts(4) = .false., varies = .false.
+      logical :: acts(signals) = .false., varies = .false.
       !> Damping of the springs, beta k0 (springs) [N s/m, N m s]; modal damping (springs, springs); allocated
       !> only if there is any
       real(wp), allocatable :: joint_damping(:), modal(:, :)
@@ -55,7 +55,7 @@ contains
       class(equation_of_motion), intent(out) :: self
       class(structure_type), intent(in), target :: structure
       !> Which of the loads act
-      logical, intent(in) :: acts(4)
+      logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(out) :: error
 
       self%structure => structure
@@ -192,7 +192,7 @@ contains
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(inout) :: springs
       !> Loads at the end of the move
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       integer :: i, j
 
       if (.not. springs%axial_load_varies) return

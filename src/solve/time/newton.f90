@@ -10,7 +10,7 @@ module rbs_solve_time_newton
    use rbs_solve_line_search, only: false_position
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
    use rbs_structure_spring_location, only: spring_name
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -35,7 +35,7 @@ module rbs_solve_time_newton
       logical :: searches_uphill = .true.
       !> The step that is taken: its length [s], the loads at its end, the relative size of the residual of
       !> the trial
-      real(wp) :: h = 0.0_wp, load(4) = 0.0_wp, residual = 0.0_wp
+      real(wp) :: h = 0.0_wp, load(signals) = 0.0_wp, residual = 0.0_wp
       !> Whether it has converged, whether springs have changed their lines, and a mark was set, and whether
       !> there is a correction
       logical :: converged = .false., marked = .false., regular = .true.

@@ -3,7 +3,7 @@ module rbs_solve_time_pair45
    use rbs_base_kinds, only: wp
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -61,7 +61,7 @@ contains
       class(pair45_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
-      real(wp) :: load(4), of_loads, of_damping
+      real(wp) :: load(signals), of_loads, of_damping
       integer :: stage
 
       if (.not. self%begun) then
@@ -89,7 +89,7 @@ contains
    subroutine find_powers(self, state, load, of_loads, of_damping)
       class(pair45_scheme), intent(in) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       real(wp), intent(out) :: of_loads, of_damping
 
       of_loads = self%now%power
@@ -103,7 +103,7 @@ contains
       class(pair45_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
       integer, intent(in) :: stage
-      real(wp), intent(in) :: h, load(4)
+      real(wp), intent(in) :: h, load(signals)
 
       call add_rates(size(self%q), stage - 1, h*row(:, stage), state%q, self%rate_q, self%q)
       call add_rates(size(self%v), stage - 1, h*row(:, stage), state%v, self%rate_v, self%v)

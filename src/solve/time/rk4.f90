@@ -2,7 +2,7 @@
 module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_loading_loads, only: lateral, horizontal
+   use rbs_loading_loads, only: lateral, horizontal, signals
    use rbs_solve_one_body_body_damping, only: column_of_one_body
    use rbs_solve_one_body_rk4_one_body, only: rk4_body
    use rbs_structure_column_column, only: column_type
@@ -59,7 +59,7 @@ contains
       type(state_type), intent(inout) :: state
       !> Step [s]
       real(wp), intent(in) :: h
-      real(wp) :: load(4, 3), push(3), ground(3)
+      real(wp) :: load(signals, 3), push(3), ground(3)
 
       load(:, 1) = state%load
       call state%loads%at_time(state%time + 0.5_wp*h, load(:, 2))
@@ -83,7 +83,7 @@ contains
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
       !> Loads at start, middle and end
-      real(wp), intent(in) :: load(4, 3)
+      real(wp), intent(in) :: load(signals, 3)
       real(wp) :: start(2), speed(2)
       integer :: stage, i, m
 

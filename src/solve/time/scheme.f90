@@ -4,7 +4,7 @@ module rbs_solve_time_scheme
    use rbs_base_kinds, only: wp
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -17,7 +17,7 @@ module rbs_solve_time_scheme
       !> scheme has one (springs)
       real(wp), allocatable :: q(:), v(:), error_q(:), error_v(:)
       !> Works of loads and damping in it [J]; loads at its end
-      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, load(4) = 0.0_wp
+      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, load(signals) = 0.0_wp
       !> The equation of motion at the last stage
       type(motion_result) :: now
       !> Whether the acceleration at the start is known from the last attempt

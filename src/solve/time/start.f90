@@ -10,7 +10,7 @@ module rbs_solve_time_start
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
    use rbs_structure_spring_location, only: spring_name, axial
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -36,7 +36,7 @@ contains
       type(time_plan), intent(inout) :: plan
       type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_force(size(structure%location)), residual, largest(4)
+      real(wp) :: axial_force(size(structure%location)), residual, largest(signals)
       integer :: i
 
       call create_state(state, structure, loads, plan%begin, error)
@@ -209,7 +209,7 @@ contains
    subroutine close_joints(state, error)
       type(state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: load(4), tension
+      real(wp) :: load(signals), tension
       integer :: i
       logical :: found
 

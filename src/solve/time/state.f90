@@ -5,7 +5,7 @@ module rbs_solve_time_state
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, signals
    use rbs_solve_time_motion, only: equation_of_motion
    use rbs_solve_time_monitor, only: response_monitor
    implicit none
@@ -20,7 +20,7 @@ module rbs_solve_time_state
       !> Position, deformations of the springs first, and its velocity (coordinates)
       real(wp), allocatable :: q(:), v(:)
       !> Time since the start of the run [s], which keeps its digits where the clock is late; the loads then
-      real(wp) :: time = 0.0_wp, load(4) = 0.0_wp
+      real(wp) :: time = 0.0_wp, load(signals) = 0.0_wp
       !> Time of the clock at the start, and now [s]; works of loads and damping, and the energy at the start
       !> [J]
       real(wp) :: begin = 0.0_wp, clock = 0.0_wp, of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp

@@ -28,7 +28,7 @@ module rbs_structure_column_column
    use rbs_structure_spring_location, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, &
                                       power_of_patterns, small, pdelta, &
-                                      finite, lateral, horizontal, vertical, top_axial, signals
+                                      finite, lateral, horizontal, vertical, top_axial, sideways, signals
    implicit none
    private
 
@@ -423,6 +423,11 @@ contains
       logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(inout) :: error
 
+      if (acts(sideways)) then
+         call fatal_error(error, bad_input, 'ground_acceleration_y: a column moves along x alone; give '// &
+                          'ground_acceleration')
+         return
+      end if
       if (self%kinematics /= small .or. self%opens .or. any(self%rules%name == 'layered')) return
       if (acts(vertical)) then
          call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &

@@ -96,7 +96,7 @@ contains
    !>     m s cos(th) u'' + (I + m s^2) th'' + M = (F l - m s a_g) cos(th) + P l sin(th)
    pure subroutine accelerate_one_body(self, d, v, f, load, a, power)
       class(finite_chain_type), intent(in) :: self
-      real(wp), intent(in) :: d(2), v(2), f(2), load(4)
+      real(wp), intent(in) :: d(2), v(2), f(2), load(signals)
       !> Accelerations; power of the loads [W]
       real(wp), intent(out) :: a(2), power
       real(wp) :: s, c, coupling, along, about, determinant, axial
@@ -128,7 +128,7 @@ contains
       class(finite_chain_type), intent(in) :: column
       !> Unknowns, their velocities, and the forces of the joints conjugate to them, springs and damping
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), f(column%n, column%kinds)
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       real(wp), intent(inout) :: work(column%n, 5)
       real(wp), intent(out) :: a(column%n, column%kinds)
       !> Joint below and above the body: forces, slip and opening

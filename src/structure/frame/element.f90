@@ -22,7 +22,11 @@ module rbs_structure_frame_element
    implicit none
    private
 
-   public :: frame_element, element_joint
+   public :: frame_element, element_joint, most_columns
+
+   !> Most unknowns that move an element: in a building x of both ends follows from three of a floor, and a
+   !> column may have two planes that share its elongation.
+   integer, parameter :: most_columns = 11
 
    !> x at which a member buckles between ends that are clamped.
    real(wp), parameter :: largest_x = acos(-1.0_wp)**2
@@ -50,14 +54,16 @@ module rbs_structure_frame_element
    type :: frame_element
       !> The nodes at its ends
       integer :: node(2) = 0
-      !> Numbers of their displacements among the unknowns, (x, y, theta) each; 0 where a support holds one
-      integer :: number(6) = 0
+      !> Numbers of their displacements among the unknowns, (x, y, theta) each; 0 where a support holds one.
+      !> In a building these of x are the first unknown that moves the floor, and others stand behind; how
+      !> many there are in all
+      integer :: number(most_columns) = 0, width = 6
       !> Elongation and rotations against the chord from the displacements of the nodes, (x, y, theta) each
-      real(wp) :: to_basic(3, 6) = 0.0_wp
+      real(wp) :: to_basic(3, most_columns) = 0.0_wp
       !> The same, and the rotations of rigid ends and chord, from the unknowns alone, without branches: zero
       !> and the first unknown where a support holds a displacement
-      real(wp) :: from_unknowns(3, 6) = 0.0_wp, lean(3, 6) = 0.0_wp
-      integer :: unknown(6) = 1
+      real(wp) :: from_unknowns(3, most_columns) = 0.0_wp, lean(3, most_columns) = 0.0_wp
+      integer :: unknown(most_columns) = 1
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
       integer :: before = 0, bending = 0, opening = 0
       type(element_joint), allocatable :: joint(:)
@@ -90,6 +96,7 @@ module rbs_structure_frame_element
       logical :: pinned = .false., after_dead_load = .false.
       real(wp) :: built_at(3) = 0.0_wp
    contains
+      procedure :: follow_floor
       procedure :: leave_out_supports
       procedure :: disconnect
       procedure :: set_initial
@@ -102,12 +109,27 @@ module rbs_structure_frame_element
 
 contains
 
+   !> Rows of unknowns that move x of an end, from those of x itself.
+   pure subroutine follow_floor(self, end_of, factor)
+      class(frame_element), intent(inout) :: self
+      !> The column of x that each follows from, and its share in it (columns)
+      integer, intent(in) :: end_of(most_columns)
+      real(wp), intent(in) :: factor(most_columns)
+      integer :: k
+
+      do k = self%width, 1, -1
+         if (end_of(k) == 0) cycle
+         self%to_basic(:, k) = factor(k)*self%to_basic(:, end_of(k))
+         self%lean(:, k) = factor(k)*self%lean(:, end_of(k))
+      end do
+   end subroutine follow_floor
+
    !> Rows per unknown from `number`, `to_basic` and `lean`: zero where a support holds a displacement.
    pure subroutine leave_out_supports(self)
       class(frame_element), intent(inout) :: self
       integer :: k
 
-      do k = 1, 6
+      do k = 1, self%width
          if (self%number(k) > 0) then
             self%unknown(k) = self%number(k)
             self%from_unknowns(:, k) = self%to_basic(:, k)

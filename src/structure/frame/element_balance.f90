@@ -4,7 +4,7 @@ module rbs_structure_frame_element_balance
    use rbs_base_kinds, only: wp
    use rbs_base_tolerances, only: round_off_of_rates
    use rbs_structure_condensation, only: series_tangent
-   use rbs_structure_frame_element, only: frame_element, element_joint
+   use rbs_structure_frame_element, only: frame_element, element_joint, most_columns
    implicit none
    private
 
@@ -12,6 +12,9 @@ module rbs_structure_frame_element_balance
              balance_of_ends
    public :: add_end_forces, add_band, add_geometric_band
    public :: spring_motion, drop_round_off, energy_of_rest
+
+   !> Displacements of two ends.
+   integer, parameter :: ends = 6
 
 contains
 
@@ -22,6 +25,7 @@ contains
       !> (unknowns)
       real(wp), intent(in), contiguous :: x(:)
       real(wp) :: q(3)
+      integer :: k
 
       if (e%is_panel) then
          associate (b => e%from_unknowns, at => e%unknown)
@@ -31,6 +35,10 @@ contains
          associate (row => e%from_unknowns, at => e%unknown)
             q = row(:, 1)*x(at(1)) + row(:, 2)*x(at(2)) + row(:, 3)*x(at(3)) &
                 + row(:, 4)*x(at(4)) + row(:, 5)*x(at(5)) + row(:, 6)*x(at(6))
+            ! In a building
+            do k = ends + 1, e%width
+               q = q + row(:, k)*x(at(k))
+            end do
          end associate
       end if
    end function end_motion
@@ -44,7 +52,7 @@ contains
       integer :: k
 
       terms = 0.0_wp
-      do k = 1, 6
+      do k = 1, e%width
          if (e%number(k) > 0) terms = terms + abs(e%to_basic(:, k)*x(e%number(k)))
       end do
    end function motion_terms
@@ -54,7 +62,7 @@ contains
       type(frame_element), intent(in) :: e
       real(wp), intent(in), contiguous :: x(:)
 
-      rotation = sum(e%lean(3, :)*x(e%unknown))
+      rotation = sum(e%lean(3, :e%width)*x(e%unknown(:e%width)))
    end function chord_rotation
 
    !> Motion of the ends of an element since it was built, less that which its springs and its dead load make:
@@ -203,7 +211,7 @@ contains
          g(e%unknown(6)) = g(e%unknown(6)) + s(1)*e%from_unknowns(1, 6)
       else
          associate (row => e%from_unknowns, at => e%unknown)
-            do k = 1, 6
+            do k = 1, e%width
                g(at(k)) = g(at(k)) + (s(1)*row(1, k) + s(2)*row(2, k) + s(3)*row(3, k))
             end do
          end associate
@@ -217,7 +225,11 @@ contains
       !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
 
-      call add_product(e%number, e%to_basic, a, band)
+      if (e%width == ends) then
+         call add_product(ends, e%number, e%to_basic, a, band)
+      else
+         call add_product(e%width, e%number, e%to_basic, a, band)
+      end if
    end subroutine add_band
 
    !> Add the derivatives of the second-order forces of an axial force, with their sign turned.
@@ -231,22 +243,22 @@ contains
       a(1, 1) = -compression*e%rigid(1)
       a(2, 2) = -compression*e%rigid(2)
       a(3, 3) = -compression*e%length
-      call add_product(e%number, e%lean, a, band)
+      call add_product(e%width, e%number, e%lean, a, band)
    end subroutine add_geometric_band
 
    !> Add B' A B of three rows of the displacements of the ends.
-   pure subroutine add_product(number, b, a, band)
-      integer, intent(in) :: number(6)
-      real(wp), intent(in) :: b(3, 6), a(3, 3)
+   pure subroutine add_product(width, number, b, a, band)
+      integer, intent(in) :: width, number(width)
+      real(wp), intent(in) :: b(3, width), a(3, 3)
       real(wp), intent(inout), contiguous :: band(:, :)
       real(wp) :: row(3)
       integer :: i, j
 
-      do j = 1, 6
+      do j = 1, width
          associate (column => number(j))
             if (column == 0) cycle
             row = a(:, 1)*b(1, j) + a(:, 2)*b(2, j) + a(:, 3)*b(3, j)
-            do i = 1, 6
+            do i = 1, width
                if (number(i) < column) cycle
                associate (entry => band(1 + number(i) - column, column))
                   entry = entry + sum(b(:, i)*row)

@@ -17,11 +17,12 @@ module rbs_structure_frame_frame
                                                   add_end_forces, add_band, add_geometric_band, &
                                                   spring_motion, drop_round_off
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_structure_structure, only: structure_type, lateral, signals, top_axial
+   use rbs_structure_frame_plan, only: floor_plan
+   use rbs_structure_structure, only: structure_type, lateral, horizontal, sideways, signals, top_axial
    implicit none
    private
 
-   public :: frame_type, frame_channel
+   public :: frame_type, frame_channel, plan_channel
 
    !> Channels of a frame besides those of all structures: displacements of the nodes along x and
    !> upward and clockwise rotations; axial forces of the members (compression positive) and moments of their
@@ -36,6 +37,13 @@ module rbs_structure_frame_frame
       channel_type('opening', 'm'), channel_type('axial_force', 'N'), &
       channel_type('node_acceleration', 'm/s2'), channel_type('ground_acceleration', 'm/s2'), &
       channel_type('lost', '')]
+
+   !> Channels of a building besides these: displacements of its floors along x and y and counterclockwise
+   !> rotations, and forces of the supports along x of each plane, without those of damping; on demand
+   !> the acceleration of the ground along y.
+   type(channel_type), parameter :: plan_channel(5) = [ &
+      channel_type('floor_x', 'm'), channel_type('floor_y', 'm'), channel_type('floor_rotation', 'rad'), &
+      channel_type('plane_shear', 'N'), channel_type('ground_acceleration_y', 'm/s2')]
 
    !> Share of the terms of all elements that counts as those of any.
    real(wp), parameter :: of_all = 0.01_wp
@@ -61,6 +69,18 @@ module rbs_structure_frame_frame
       type(spring_list) :: listed(3)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
+      !> In a building x of a node on a floor is moved by up to three unknowns of it: that of `number` and
+      !> others (2, nodes), 0 for none, by their shares (3, nodes)
+      integer, allocatable :: also(:, :)
+      real(wp), allocatable :: share(:, :)
+      !> Rigid floors of a building, of no planes for a planar frame. Planes of the nodes, 0 for none (nodes);
+      !> their nodes at the base (planes); heights of the storeys [m]
+      type(floor_plan) :: plan
+      integer, allocatable :: plane(:), foot(:)
+      real(wp), allocatable :: storey_height(:)
+      !> Of a column in two planes: for the second the member of the first, and the unknown of the part of
+      !> their elongation that is of the second; 0: none (members)
+      integer, allocatable :: axial_of(:), parting(:)
       !> The same of the rotation of the beams, where a panel lets them turn against columns; else 0 (nodes)
       integer, allocatable :: beam_rotation(:)
       !> Number of members; elements behind them are panels of nodes
@@ -77,6 +97,9 @@ module rbs_structure_frame_frame
       !> stiffness; not allocated where there is none
       type(sparse_matrix), allocatable :: second_order, damping
    contains
+      procedure :: along_x
+      procedure :: add_along_x
+      procedure :: plane_drift
       procedure :: linearise
       procedure :: damp
       procedure :: add_damping
@@ -104,6 +127,7 @@ module rbs_structure_frame_frame
       procedure :: channels
       procedure :: fill_row
       procedure :: base_force
+      procedure :: set_shape
       procedure :: check_loads
       procedure :: is_removed
       procedure :: next_failed_member
@@ -232,6 +256,56 @@ module rbs_structure_frame_frame
    end interface
 
 contains
+
+   !> Displacement of a node along x of its plane.
+   pure real(wp) function along_x(self, node, x) result(moved)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: node
+      !> Unknowns, or changes of them (unknowns)
+      real(wp), intent(in) :: x(:)
+      integer :: j
+
+      moved = 0.0_wp
+      if (self%number(1, node) == 0) return
+      moved = self%share(1, node)*x(self%number(1, node))
+      do j = 1, 2
+         if (self%also(j, node) > 0) moved = moved + self%share(1 + j, node)*x(self%also(j, node))
+      end do
+   end function along_x
+
+   !> Forces on the unknowns of one along x of a node.
+   pure subroutine add_along_x(self, node, force, row)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: node
+      real(wp), intent(in) :: force
+      !> (unknowns)
+      real(wp), intent(inout) :: row(:)
+      integer :: j
+
+      associate (at => self%number(1, node))
+         if (at == 0) return
+         row(at) = row(at) + self%share(1, node)*force
+      end associate
+      do j = 1, 2
+         associate (at => self%also(j, node))
+            if (at > 0) row(at) = row(at) + self%share(1 + j, node)*force
+         end associate
+      end do
+   end subroutine add_along_x
+
+   !> Drift of a storey in a plane of a building.
+   pure real(wp) function plane_drift(self, plane, storey, x) result(drift)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: plane, storey
+      !> (unknowns)
+      real(wp), intent(in) :: x(:)
+
+      drift = sum(self%plan%share(:, plane, storey)*self%plan%motion(storey, x))
+      if (storey > 1) drift = drift - &
+                              sum(self%plan%share(:, plane, storey - 1)*self%plan%motion(storey - 1, x))
+      if (storey == 1 .and. self%foot(plane) > 0) drift = drift - self%along_x(self%foot(plane), x)
+      drift = drift/self%storey_height(storey)
+   end function plane_drift
 
    !> Tangents of the elements on lines of the springs.
    subroutine linearise(self, k, tangent, unstable, shares)
@@ -464,8 +538,18 @@ contains
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(out), contiguous :: drift(:)
-      integer :: i
+      integer :: i, plane
 
+      if (self%plan%is_given()) then
+         ! Those of the plane that has the largest.
+         do i = 1, self%storeys
+            associate (of_planes => [(abs(self%plane_drift(plane, i, d(self%springs + 1:))), &
+                                      plane=1, self%plan%planes())])
+               drift(i) = maxval(of_planes)
+            end associate
+         end do
+         return
+      end if
       drift = 0.0_wp
       do i = 1, self%n
          if (self%number(1, i) == 0) cycle
@@ -478,6 +562,25 @@ contains
       end do
    end subroutine storey_drifts
 
+   !> A mode of a building that moves no mass along x has the sign of that along y, or of the turn of its
+   !> roof.
+   pure subroutine set_shape(self, part, found, shape)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: part
+      real(wp), intent(in), contiguous :: found(:)
+      real(wp), intent(inout), contiguous :: shape(:)
+      real(wp) :: moved(3), roof(3)
+
+      moved = [-self%work_of(horizontal, found), -self%work_of(sideways, found), 0.0_wp]
+      if (self%plan%is_given()) then
+         roof = self%plan%motion(self%storeys, found)
+         moved(3) = roof(3)*sqrt(self%plan%turning_mass(self%inertias))
+         ! Of one part in one direction nothing but round-off may be left.
+         moved(1) = moved(maxloc(abs(moved), dim=1))
+      end if
+      shape = sign(1.0_wp, moved(1))*found
+   end subroutine set_shape
+
    !> Refuse an axial load: that of columns follows from the dead load.
    subroutine check_loads(self, acts, error)
       class(frame_type), intent(in) :: self
@@ -487,6 +590,13 @@ contains
       if (acts(top_axial)) then
          call fatal_error(error, bad_input, 'axial_load: a frame has none that varies; its columns '// &
                           'carry the dead load of floors, beams and nodes')
+      else if (acts(sideways) .and. .not. any(abs(self%pattern(sideways)%force) > 0.0_wp)) then
+         call fatal_error(error, bad_input, 'ground_acceleration_y: nothing of it moves along y; give '// &
+                          'ground_acceleration alone, or planes along y with mass')
+      else if (acts(horizontal) .and. self%plan%is_given() .and. &
+               .not. any(abs(self%pattern(horizontal)%force) > 0.0_wp)) then
+         call fatal_error(error, bad_input, 'ground_acceleration: nothing of the building moves along x; '// &
+                          'give ground_acceleration_y, or planes along x with mass')
       else if (acts(lateral) .and. .not. any(abs(self%pattern(lateral)%force) > 0.0_wp)) then
          call fatal_error(error, bad_input, 'force: the pattern of the lateral load has no share of any '// &
                           'node; choose pattern')

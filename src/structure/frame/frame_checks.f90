@@ -30,6 +30,13 @@ contains
       logical :: within
 
       call record%check('frame', messages)
+      do i = 1, size(record%plane)
+         if (record%plane(i)%name == '') call messages%add('plane: the name is missing; give each a name')
+         call record%plane(i)%check("plane '"//trim(record%plane(i)%name)//"'", messages)
+         if (any(record%plane(:i - 1)%name == record%plane(i)%name)) then
+            call messages%add("plane '"//trim(record%plane(i)%name)//"' is given twice; remove one")
+         end if
+      end do
       do i = 1, size(record%floor)
          call record%floor(i)%check('floor', messages)
       end do

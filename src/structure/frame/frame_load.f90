@@ -55,6 +55,13 @@ contains
             self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
          end associate
       end do
+      do i = 1, self%members
+         if (self%axial_of(i) == 0) cycle
+         associate (e => self%element(i), whole => self%element(self%axial_of(i))%compression)
+            call self%compress(i, whole)
+            self%constant_axial(e%before + 1:e%before + e%bending) = whole
+         end associate
+      end do
       call self%set_second_order()
       ! The elastic rest has changed.
       self%initial_tangent%is_known = .false.

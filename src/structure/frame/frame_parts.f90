@@ -9,6 +9,7 @@ module rbs_structure_frame_frame_parts
    use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost, stiffness_of
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record, kind_record
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
+   use rbs_structure_frame_plan, only: floor_plan, cosine_sine
    implicit none
    private
 
@@ -28,8 +29,10 @@ module rbs_structure_frame_frame_parts
       type(frame_member), allocatable :: member(:)
       !> Number of members so far; nodes and members of the grid, which come first
       integer :: members = 0, grid_nodes = 0, grid_members = 0
-      !> The node whose displacement is that of the top
+      !> The node whose displacement is that of the top; 0: of a building the highest floor
       integer :: top = 0
+      !> Planes and rigid floors of a building
+      type(floor_plan) :: plan
    contains
       procedure :: find
    end type frame_parts
@@ -48,6 +51,7 @@ contains
       if (messages%count > known) return
       call lay_grid(self, record, messages)
       call put_nodes(self, record, messages)
+      call put_planes(self, record, messages)
       call put_members(self, record, messages)
       if (size(self%node) == 0) then
          call messages%add('frame: it has no storeys and no nodes; give storeys (and bays), or groups '// &
@@ -57,6 +61,7 @@ contains
       call put_node_springs(self, record, messages)
       call put_losses(self, record, messages)
       call put_kinds(self, record, messages)
+      call put_second_planes(self, record, messages)
       call hold_idle(self)
       call hold_between_pins(self)
       call check_geometry(self, messages)
@@ -146,7 +151,7 @@ contains
       type(message_list), intent(inout) :: messages
       integer :: i
 
-      do i = 1, size(record%floor)
+      do i = 1, merge(0, size(record%floor), size(record%plane) > 0)
          if (record%floor(i)%floor > storeys) then
             call refuse('floor: floor', record%floor(i)%floor, 'floors', storeys)
          end if
@@ -348,6 +353,180 @@ contains
       call check_floors(self%node, messages)
    end subroutine put_nodes
 
+   !> Planes of a building, and what its nodes and floors share.
+   subroutine put_planes(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: i, j, known, number, of_plane, with, free
+      real(wp) :: along(2)
+      real(wp), allocatable :: centre(:, :)
+      logical, allocatable :: is_there(:, :)
+
+      known = messages%count
+      if (size(record%plane) == 0) then
+         do i = 1, size(record%node)
+            if (record%node(i)%plane == '' .and. record%node(i)%rises_with == '') cycle
+            call messages%add("node '"//trim(record%node(i)%name)//"': plane and rises_with belong to a "// &
+                              'building, and no group &plane is given; give one for each frame of it')
+            return
+         end do
+         if (any(record%floor%inertia > 0.0_wp) .or. abs(record%direction) > 0.0_wp) then
+            call messages%add('frame: inertia of floors and direction belong to a building, and no group '// &
+                              '&plane is given; remove them, or give a plane for each frame')
+         end if
+         return
+      end if
+      if (self%grid_nodes > 0 .or. record%diaphragm) then
+         call messages%add('frame: storeys, bays and diaphragm are of a planar frame; the nodes of a '// &
+                           'building have x, y, floor and plane of their own')
+      end if
+      if (record%control == 'y') call messages%add("frame: control = 'y' is of a planar frame; remove it")
+      do i = 1, size(record%node)
+         associate (given => record%node(i), name => "node '"//trim(record%node(i)%name)//"'")
+            number = findloc(self%node%name == given%name, .true., dim=1)
+            if (number == 0) cycle
+            call check_reference(given%plane, [record%plane%name], name//': plane', 'plane', messages)
+            of_plane = findloc(record%plane%name == given%plane, .true., dim=1)
+            self%node(number)%plane = of_plane
+            if (given%moves_with /= '') then
+               call messages%add(name//': moves_with is of a planar frame; in a building nodes of a '// &
+                        'floor '// &
+                                 'move with it')
+            end if
+            if (given%rises_with == '') cycle
+            call check_reference(given%rises_with, [self%node%name], name//': rises_with', 'node', messages)
+            with = findloc(self%node%name == given%rises_with, .true., dim=1)
+            if (with == 0) cycle
+            if (with == number .or. record%node(findloc(record%node%name == given%rises_with, .true., &
+                                                        dim=1))%rises_with /= '') then
+               call messages%add(name//": rises_with = '"//trim(given%rises_with)//"' rises with another "// &
+                                 'node itself; name that one')
+               cycle
+            end if
+            self%node(number)%rises_like = with
+         end associate
+      end do
+      if (messages%count > known) return
+      do i = 1, size(self%node)
+         associate (node => self%node(i), with => self%node(i)%rises_like)
+            if (with > 0) then
+               if (node%held(2) .neqv. self%node(with)%held(2)) then
+                  call messages%add("node '"//trim(node%name)//"' rises with node '"// &
+                                    trim(self%node(with)%name)//"', and a support holds one of them "// &
+                                    'alone; '// &
+                                    'give both the same')
+               end if
+            end if
+            if (node%held(1) .and. node%follows_floor()) then
+               call messages%add("node '"//trim(node%name)//"' is held along x, and would hold its "// &
+                                 'floor; '// &
+                                 'remove the support, or its floor')
+            end if
+         end associate
+      end do
+      associate (floors => max(0, maxval(self%node%storey)))
+         if (floors == 0) then
+            call messages%add('frame: a building has floors, and no node names one; give nodes their floors')
+            return
+         end if
+         allocate (self%plan%share(3, size(record%plane), floors))
+         allocate (centre(2, floors), source=0.0_wp)
+         allocate (self%plan%mass(floors), self%plan%inertia(floors), source=0.0_wp)
+         do i = 1, size(record%plane)
+            if (any(self%node%plane == i .and. self%node%storey > 0)) cycle
+            call messages%add("plane '"//trim(record%plane(i)%name)//"' has no node on a floor; remove it")
+         end do
+         do i = 1, size(record%floor)
+            associate (floor => record%floor(i))
+               if (floor%floor > floors) then
+                  call messages%add('floor: floor = '//to_text(floor%floor)//', but the building has '// &
+                                    to_text(floors)//' floors; correct it, or give 0 for all')
+               else if (floor%floor > 0) then
+                  self%plan%mass(floor%floor) = floor%mass
+                  self%plan%inertia(floor%floor) = floor%inertia
+                  centre(:, floor%floor) = [floor%centre_x, floor%centre_y]
+               else
+                  self%plan%mass = floor%mass
+                  self%plan%inertia = floor%inertia
+                  centre = spread([floor%centre_x, floor%centre_y], 2, floors)
+               end if
+               if (abs(floor%dead_load) > 0.0_wp) then
+                  call messages%add('floor: dead_load acts on the beams of a grid, and a building has '// &
+                           'none; '// &
+                                    'give it to its members as load')
+               end if
+            end associate
+         end do
+         do i = 1, size(record%plane)
+            along = cosine_sine(record%plane(i)%angle)
+            do j = 1, floors
+               self%plan%share(:, i, j) = [along, record%plane(i)%arm - &
+                                           (centre(1, j)*along(2) - centre(2, j)*along(1))]
+            end do
+         end do
+         is_there = reshape([((any(self%node%plane == i .and. self%node%storey == j), &
+                               i=1, size(record%plane)), j=1, floors)], [size(record%plane), floors])
+      end associate
+      self%plan%direction(:2) = cosine_sine(record%direction)
+      self%plan%by_nodes = record%pattern == 'nodes'
+      call self%plan%hold_free(is_there, free)
+      if (free > 0) then
+         call messages%add('floor '//to_text(free)//': the planes leave it free to turn, or to move; '// &
+                  'give '// &
+                           'planes in another direction, or at other distances from the centre of mass')
+      else if (any(self%plan%held .and. abs(self%plan%direction) > 0.0_wp)) then
+         call messages%add('frame: direction = '//to_text(record%direction)//' has a part along '// &
+                           merge('x', 'y', self%plan%held(1) .and. abs(self%plan%direction(1)) > 0.0_wp)// &
+                           ', in which no plane of the building resists it; choose another one')
+      end if
+   end subroutine put_planes
+
+   !> Columns in two planes.
+   subroutine put_second_planes(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: i, number, with
+      logical :: is_lost
+
+      do i = 1, size(record%member)
+         associate (given => record%member(i), name => 'member '//trim(record%member(i)%name))
+            if (given%axial_of == '') cycle
+            call check_reference(given%axial_of, [self%member%name], name//': axial_of', 'member', messages)
+            number = findloc(self%member%name == given%name, .true., dim=1)
+            with = findloc(self%member%name == given%axial_of, .true., dim=1)
+            if (with == 0) cycle
+            if (with == number .or. record%member(with)%axial_of /= '' .or. &
+                any(self%member(:number - 1)%axial_of == with)) then
+               call messages%add(name//": axial_of = '"//trim(given%axial_of)//"' is no column of one "// &
+                                 'other '// &
+                                 'plane; a column has two planes, of which the first has none')
+               cycle
+            end if
+            associate (a => self%member(number)%node, b => self%member(with)%node)
+               if (any(self%node(a)%plane == self%node(b)%plane) .or. &
+                   any(self%node(a)%rises_like /= b .and. .not. (self%node(a)%held(2) .and. &
+                                                                  self%node(b)%held(2)))) then
+                  call messages%add(name//": axial_of = '"//trim(given%axial_of)//"' is a column between "// &
+                                    'other nodes; their nodes rise together (rises_with)')
+                  cycle
+               end if
+            end associate
+            associate (both => self%member([number, with]))
+               is_lost = any(is_given([both%lost_at, both%failure_drift]))
+            end associate
+            if (is_lost) then
+               call messages%add('member '//trim(given%name)//' is a column in two planes, and these '// &
+                        'cannot be '// &
+                                 'lost; leave out its group &loss, and failure_drift of its kind')
+               cycle
+            end if
+            self%member(number)%axial_of = with
+         end associate
+      end do
+   end subroutine put_second_planes
+
    !> Refuse floors without nodes, and those that are not above the floor before.
    subroutine check_floors(node, messages)
       type(frame_node), intent(in) :: node(:)
@@ -457,6 +636,14 @@ contains
                   if (node%held(k)) then
                      call messages%add('the '//trim(s%group)//" spring of node '"//trim(node%name)// &
                                        "' does nothing, as its support holds it; change support (or base)")
+                  else if (k == 1 .and. node%follows_floor()) then
+                     call messages%add("the spring of node '"//trim(node%name)//"' holds a floor, which "// &
+                                       'moves '// &
+                                       'in plan; give it to a node of the base')
+                  else if (k == 2 .and. node%rises_like > 0) then
+                     call messages%add("the spring of node '"//trim(node%name)//"' stands where another "// &
+                                       "node rises alike; give it to node '"// &
+                                       trim(self%node(node%rises_like)%name)//"'")
                   else if (k == 1 .and. node%like > 0) then
                      call messages%add("the spring of node '"//trim(node%name)//"' stands where another "// &
                                        "node moves alike; give it to node '"// &
@@ -665,6 +852,7 @@ contains
          associate (node => self%node(i))
             ! Nodes of the grid are apart.
             do j = 1, merge(i - 1, 0, i > self%grid_nodes)
+               if (node%plane /= self%node(j)%plane) cycle
                if (hypot(node%x - self%node(j)%x, node%y - self%node(j)%y) > near) cycle
                ! A hinge between two parts, or the feet of parts that stand behind each other
                if (leader_of(self, i) == leader_of(self, j)) cycle
@@ -747,6 +935,10 @@ contains
       integer, intent(in) :: node
 
       leader = self%node(node)%like
+      if (self%node(node)%follows_floor()) then
+         leader = findloc(self%node%follows_floor() .and. self%node%storey == self%node(node)%storey, &
+                          .true., dim=1)
+      end if
       if (leader == 0) leader = node
    end function leader_of
 
@@ -785,6 +977,7 @@ contains
       integer :: i, direction
 
       direction = merge(2, 1, record%control == 'y')
+      if (record%control_node == '' .and. self%plan%is_given()) return
       if (record%control_node == '') then
          do i = 1, size(self%node)
             if (self%node(i)%held(direction)) cycle
@@ -824,6 +1017,14 @@ contains
          return
       end if
       mass = [(merge(0.0_wp, self%node(i)%mass(1), self%node(i)%held(1)), i=1, size(self%node))]
+      ! The mass of a floor itself is on its first node.
+      if (self%plan%is_given()) then
+         do i = 1, size(self%plan%mass)
+            associate (first => findloc(self%node%follows_floor() .and. self%node%storey == i, .true., dim=1))
+               mass(first) = mass(first) + self%plan%mass(i)
+            end associate
+         end do
+      end if
       has_mass = any(mass > 0.0_wp)
       lowest = minval(self%node%y)
       do i = 1, size(self%node)

@@ -21,14 +21,25 @@ module rbs_structure_frame_frame_record
    character(len=*), parameter :: support_names = 'free roller pinned fixed'
 
    !> The groups of a frame; all but the first may appear several times.
-   character(len=12), parameter, public :: frame_groups(11) = [character(len=12) :: &
-      'frame', 'floor', 'node_load', 'member_kind', 'column_of', 'beam_of', 'infill', 'infill_of', 'node', &
-      'member', 'loss']
+   character(len=12), parameter, public :: frame_groups(12) = [character(len=12) :: &
+      'frame', 'plane', 'floor', 'node_load', 'member_kind', 'column_of', 'beam_of', 'infill', 'infill_of', &
+      'node', 'member', 'loss']
+
+   !> The vertical plane of nodes in a building, whose floors are rigid in plan: its angle from the x axis,
+   !> counterclockwise, and its distance from the origin, positive where a counterclockwise turn of the floors
+   !> moves it forward.
+   type, extends(visited_record), public :: plane_record
+      character(len=name_length) :: name = ''
+      real(wp) :: angle = 0.0_wp, arm = 0.0_wp, along = unset
+   contains
+      procedure :: visit => visit_plane
+   end type plane_record
 
    !> Mass and load of floors, 0: of all.
    type, extends(visited_record), public :: floor_record
       integer :: floor = 0
-      real(wp) :: mass = 0.0_wp, dead_load = 0.0_wp, live_load = 0.0_wp
+      real(wp) :: mass = 0.0_wp, dead_load = 0.0_wp, live_load = 0.0_wp, inertia = 0.0_wp
+      real(wp) :: centre_x = 0.0_wp, centre_y = 0.0_wp
    contains
       procedure :: visit => visit_floor
    end type floor_record
@@ -89,14 +100,14 @@ module rbs_structure_frame_frame_record
       real(wp) :: mass = 0.0_wp, inertia = 0.0_wp
       real(wp) :: load_x = 0.0_wp, load_y = 0.0_wp, load_moment = 0.0_wp
       real(wp) :: push_x = 0.0_wp, push_y = 0.0_wp
-      character(len=name_length) :: moves_with = ''
+      character(len=name_length) :: moves_with = '', plane = '', rises_with = ''
    contains
       procedure :: visit => visit_node
    end type node_record
 
    !> A member between two nodes.
    type, extends(visited_record), public :: member_record
-      character(len=name_length) :: name = '', from = '', to = '', kind = ''
+      character(len=name_length) :: name = '', from = '', to = '', kind = '', axial_of = ''
       real(wp) :: rigid_from = 0.0_wp, rigid_to = 0.0_wp, load = 0.0_wp
    contains
       procedure :: visit => visit_member
@@ -124,6 +135,8 @@ module rbs_structure_frame_frame_record
       real(wp), allocatable :: storeys(:), bays(:)
       character(len=16) :: kinematics = 'small', base = 'fixed', pattern = 'triangular', collapse = 'storey'
       logical :: diaphragm = .false.
+      !> Of the lateral load of a building [degrees]
+      real(wp) :: direction = 0.0_wp
       character(len=name_length) :: control_node = ''
       character(len=8) :: control = 'x'
       !> Of drawn members: the part of a node that is rigid, and whose ties are in the panels of the nodes
@@ -134,6 +147,7 @@ module rbs_structure_frame_frame_record
       logical :: self_weight = .false.
       character(len=16) :: mass = 'of_floors'
       real(wp), allocatable :: wall_spans(:)
+      type(plane_record), allocatable :: plane(:)
       type(floor_record), allocatable :: floor(:)
       type(node_load_record), allocatable :: node_load(:)
       type(kind_record), allocatable :: kind(:)
@@ -160,11 +174,14 @@ contains
       type(cell_record) :: beam, infilled
 
       if (.not. allocated(self%floor)) then
-         allocate (self%floor(0), self%node_load(0), self%kind(0), self%column_of(0), self%beam_of(0), &
+         allocate (self%plane(0), self%floor(0), self%node_load(0), self%kind(0), &
+                   self%column_of(0), self%beam_of(0), &
                    self%infill(0), self%infill_of(0), self%node(0), self%member(0), self%loss(0), &
                    self%spring(0))
       end if
       select case (group)
+      case ('plane')
+         self%plane = [self%plane, plane_record()]
       case ('floor')
          self%floor = [self%floor, floor_record()]
       case ('node_load')
@@ -197,6 +214,8 @@ contains
       character(len=*), intent(in) :: group
 
       select case (group)
+      case ('plane')
+         number = size(self%plane)
       case ('floor')
          number = size(self%floor)
       case ('node_load')
@@ -234,6 +253,8 @@ contains
       i = self%count_of(group)
       if (present(number)) i = number
       select case (group)
+      case ('plane')
+         call self%plane(i)%visit(v)
       case ('floor')
          call self%floor(i)%visit(v)
       case ('node_load')
@@ -273,6 +294,9 @@ contains
       call v%key('diaphragm', self%diaphragm, 'whether all nodes of a floor of the grid move alike along x')
       call v%word('pattern', self%pattern, 'shares of the lateral load: as mass, mass times height, '// &
                   'first mode, or push_x and push_y of the nodes', 'uniform triangular modal nodes')
+      call v%key('direction', self%direction, '', any_number, 'of a building: direction of the lateral '// &
+               'load in '// &
+                 'plan, in degrees from x towards y')
       call v%word('control_node', self%control_node, 'node whose displacement is that of the top; '// &
                   'without it the first of the highest')
       call v%word('control', self%control, 'direction of that displacement', 'x y')
@@ -291,6 +315,20 @@ contains
                   'of_floors from_loads')
    end subroutine visit_frame
 
+   subroutine visit_plane(self, v)
+      class(plane_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('name', self%name, 'name of the plane', required=.true.)
+      call v%key('angle', self%angle, '', any_number, 'direction of its x axis in plan, in degrees from '// &
+               'x towards y')
+      call v%key('arm', self%arm, 'm', any_number, 'distance of its x axis from the origin in plan, '// &
+               'positive '// &
+                 'where a counterclockwise turn moves it forward: -y of a plane along x, x of one along y')
+      call v%key('along', self%along, 'm', any_number, 'where its x begins on this axis: Python finds '// &
+                 'by it which columns are one', optional=.true.)
+   end subroutine visit_plane
+
    subroutine visit_floor(self, v)
       class(floor_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -298,6 +336,12 @@ contains
       call v%key('floor', self%floor, '', not_negative, 'floor that is meant, 0 for all')
       call v%key('mass', self%mass, 'kg', not_negative, 'mass of the floor, shared by its nodes as the '// &
                  'widths beside them; its weight acts as far as it is given as a load')
+      call v%key('inertia', self%inertia, 'kg m2', not_negative, 'of a building: rotary inertia about '// &
+               'the '// &
+                 'centre of mass, besides the mass, which is at it')
+      call v%key('centre_x', self%centre_x, 'm', any_number, 'of a building: place of the centre of mass '// &
+               'in plan')
+      call v%key('centre_y', self%centre_y, 'm', any_number, 'the same along y')
       call v%key('dead_load', self%dead_load, 'N/m', any_number, 'dead load on the beams of the floor, '// &
                  'downward')
       call v%key('live_load', self%live_load, 'N/m', any_number, 'live load on them, of which '// &
@@ -414,6 +458,11 @@ contains
       call v%key('push_x', self%push_x, '', any_number, 'share of the lateral load to the right')
       call v%key('push_y', self%push_y, '', any_number, 'share of the lateral load upward')
       call v%word('moves_with', self%moves_with, 'node whose displacement along x it shares')
+      call v%word('plane', self%plane, 'of a building: plane that it is in; with its floor it moves as '// &
+               'that does')
+      call v%word('rises_with', self%rises_with, 'of a building: node of another plane whose '// &
+               'displacement upward '// &
+                  'it shares')
    end subroutine visit_node
 
    subroutine visit_member(self, v)
@@ -427,6 +476,9 @@ contains
       call v%key('rigid_from', self%rigid_from, 'm', not_negative, 'rigid length at its beginning')
       call v%key('rigid_to', self%rigid_to, 'm', not_negative, 'rigid length at its end')
       call v%key('load', self%load, 'N/m', any_number, 'dead load downward, per length along x')
+      call v%word('axial_of', self%axial_of, 'of a building: column of another plane that is the same '// &
+               'column, '// &
+                  'and whose axial force is its own')
    end subroutine visit_member
 
    subroutine visit_loss(self, v)

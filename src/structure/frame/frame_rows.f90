@@ -24,6 +24,14 @@ contains
       channel(14)%count = self%n
       channel(16)%count = m
       channel = pack(channel, held)
+      if (.not. self%plan%is_given()) return
+      associate (of_plan => plan_channel)
+         channel = [channel, of_plan(:merge(5, 4, contents%motion))]
+      end associate
+      associate (first => findloc(channel%name, plan_channel(1)%name, dim=1))
+         channel(first:first + 2)%count = self%storeys
+         channel(first + 3)%count = self%plan%planes()
+      end associate
    end procedure channels
 
    module procedure fill_row
@@ -33,7 +41,8 @@ contains
       f = springs%forces(d)
       row(1:3*self%n + 1) = 0.0_wp
       do i = 1, self%n
-         do j = 1, 3
+         row(1 + i) = self%along_x(i, d(self%springs + 1:))
+         do j = 2, 3
             associate (at => self%number(j, i))
                if (at > 0) row(1 + (j - 1)*self%n + i) = d(self%springs + at)
             end associate
@@ -48,8 +57,12 @@ contains
          row(at + m + i) = s(2)
          row(at + 2*m + i) = s(3)
          row(1) = row(1) + support_force(self, i, d, s)
+         if (self%plan%is_given()) then
+            if (self%axial_of(i) > 0) row(at + i) = row(at + self%axial_of(i))
+         end if
       end do
       row(1) = row(1) + ground_force(self, f)
+      if (self%plan%is_given()) row(1) = self%base_force(d, f)
       if (contents%in_time .and. self%damped) row(1) = response%base_shear
       at = at + 3*m
       do kind = 1, 3
@@ -63,16 +76,62 @@ contains
       if (contents%motion) then
          row(at + 1:at + self%n) = 0.0_wp
          do i = 1, self%n
-            if (self%number(1, i) > 0) row(at + i) = response%a(self%springs + self%number(1, i))
+            row(at + i) = self%along_x(i, response%a(self%springs + 1:))
          end do
          at = at + self%n + 1
          row(at) = response%ground
       end if
-      if (.not. self%may_lose) return
-      do i = 1, m
-         row(at + i) = merge(1.0_wp, 0.0_wp, self%is_removed(i, springs))
-      end do
+      if (self%may_lose) then
+         do i = 1, m
+            row(at + i) = merge(1.0_wp, 0.0_wp, self%is_removed(i, springs))
+         end do
+         at = at + m
+      end if
+      if (self%plan%is_given()) call fill_plan(self, contents, response, d, f, row(at + 1:))
    end procedure fill_row
+
+   !> Values of the channels of a building: motions of its floors, forces of its planes.
+   pure subroutine fill_plan(self, contents, response, d, f, row)
+      type(frame_type), intent(in) :: self
+      type(row_contents), intent(in) :: contents
+      type(response_type), intent(in) :: response
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      real(wp), intent(out) :: row(:)
+      real(wp) :: moved(3)
+      integer :: floor
+
+      associate (n => self%storeys, planes => self%plan%planes())
+         do floor = 1, n
+            moved = self%plan%motion(floor, d(self%springs + 1:))
+            row([floor, n + floor, 2*n + floor]) = moved
+         end do
+         row(3*n + 1:3*n + planes) = plane_forces(self, d, f)
+         if (contents%motion) row(3*n + planes + 1) = response%ground_y
+      end associate
+   end subroutine fill_plan
+
+   !> Forces along x of the supports and of the springs from the ground in each plane [N].
+   pure function plane_forces(self, d, f) result(force)
+      type(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      real(wp) :: force(self%plan%planes()), s(3)
+      integer :: i
+
+      force = 0.0_wp
+      do i = 1, self%members
+         associate (e => self%element(i), plane => self%plane(self%element(i)%node(1)))
+            if (all(self%number(1, e%node) > 0)) cycle
+            call self%member_forces(i, d, f, s)
+            force(plane) = force(plane) + support_force(self, i, d, s)
+         end associate
+      end do
+      do i = self%member_springs + 1, self%springs
+         if (self%location(i)%kind /= shear) cycle
+         associate (plane => self%plane(self%location(i)%index))
+            force(plane) = force(plane) + f(i)
+         end associate
+      end do
+   end function plane_forces
 
    !> Deformation and force of a spring; of a joint of layers rotation and moment, or opening and axial force.
    pure subroutine spring_response(self, kind, spring, d, f, deformation, force)
@@ -95,6 +154,11 @@ contains
       real(wp) :: s(3)
       integer :: i
 
+      if (self%plan%is_given()) then
+         ! Along the direction of the lateral load
+         force = sum(matmul(self%plan%direction(:2), self%plan%share(:2, :, 1))*plane_forces(self, d, f))
+         return
+      end if
       force = ground_force(self, f)
       do i = 1, self%members
          if (all(self%number(1, self%element(i)%node) > 0)) cycle

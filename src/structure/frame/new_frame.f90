@@ -5,12 +5,13 @@ module rbs_structure_frame_new_frame
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
-   use rbs_structure_frame_element, only: frame_element, element_joint
+   use rbs_structure_frame_element, only: frame_element, element_joint, most_columns
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_structure_frame_numbering, only: order_nodes
+   use rbs_structure_frame_numbering, only: order_nodes, order_upward
+   use rbs_structure_frame_plan, only: floor_plan
    use rbs_structure_spring_location, only: spring_location, shear, flexure, axial, layer
-   use rbs_structure_structure, only: unknown_group, pdelta, lateral, horizontal, vertical, signals
+   use rbs_structure_structure, only: unknown_group, pdelta, lateral, horizontal, vertical, sideways, signals
    implicit none
    private
 
@@ -32,6 +33,11 @@ module rbs_structure_frame_new_frame
       type(spring_record) :: panel
       !> The node whose displacement along x this one shares, as along a floor; 0: none
       integer :: like = 0
+      !> In a building the plane that it is in, and the node whose displacement upward this one shares; 0:
+      !> none
+      integer :: plane = 0, rises_like = 0
+   contains
+      procedure :: follows_floor
    end type frame_node
 
    !> A member from node to node: rigid ends, and springs in the part that is elastic otherwise.
@@ -57,6 +63,11 @@ module rbs_structure_frame_new_frame
       !> the drift of shear failure if no shear spring has yielded, and the time from which on it is lost [s];
       !> `unset`: never
       real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset, lost_at = unset
+      !> In a building the member that is this column in another plane, and whose axial force is its own; 0:
+      !> none
+      integer :: axial_of = 0
+   contains
+      procedure :: opens
    end type frame_member
 
    !> Motion of the ends by the opening of a joint.
@@ -65,12 +76,15 @@ module rbs_structure_frame_new_frame
 contains
 
    !> Make a frame of nodes and members that have been checked.
-   subroutine new_frame(frame, node, member, kinematics, top, vertical)
+   subroutine new_frame(frame, node, member, kinematics, plan, top, vertical)
       type(frame_type), intent(out) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
       integer, intent(in) :: kinematics
-      !> The node whose displacement is that of the top
+      !> Of a building; else of no planes
+      type(floor_plan), intent(in) :: plan
+      !> The node whose displacement is that of the top; 0: in a building that of the highest floor along the
+      !> load
       integer, intent(in) :: top
       !> Whether that is the one upward, not the one along x
       logical, intent(in), optional :: vertical
@@ -84,6 +98,9 @@ contains
       frame%storey = node%storey
       frame%x = node%x
       frame%y = node%y
+      frame%plan = plan
+      frame%plane = node%plane
+      frame%axial_of = member%axial_of
       ! Distances of the nodes from a point on none of their axes: they differ between frames.
       frame%length = [(hypot(node(i)%x + 1.0_wp/3.0_wp, node(i)%y + 0.7_wp), i=1, size(node))]
       frame%height = maxval(node%y) - minval(node%y)
@@ -112,10 +129,16 @@ contains
          allocate (frame%arm(frame%coordinates), frame%constant_axial(springs), source=0.0_wp)
          direction = 1
          if (present(vertical)) direction = merge(2, 1, vertical)
-         frame%arm(springs + frame%number(direction, top)) = 1.0_wp
+         if (top > 0 .and. direction == 2) then
+            frame%arm(springs + frame%number(2, top)) = 1.0_wp
+         else if (top > 0) then
+            call frame%add_along_x(top, 1.0_wp, frame%arm(springs + 1:))
+         else
+            call put_on_floor(frame, frame%storeys, frame%plan%direction, frame%arm(springs + 1:))
+         end if
          frame%control = frame%arm(springs + 1:springs + frame%unknowns)
       end associate
-      call set_ground(frame, node, spring)
+      call set_ground(frame, node, member, spring)
       call set_elements(frame, node, member, spring)
       call set_panels(frame, node, spring)
       call list_springs(frame)
@@ -147,6 +170,7 @@ contains
       integer :: i, nodes
 
       frame%storeys = max(maxval(frame%storey), 0)
+      if (frame%plan%is_given()) call set_levels(frame)
       allocate (frame%storey_share(2, frame%n), source=0.0_wp)
       do i = 1, frame%storeys
          associate (above => frame%storey == i, below => frame%storey == i - 1)
@@ -159,26 +183,51 @@ contains
       end do
    end subroutine set_storeys
 
+   !> Heights of the storeys of a building, and in each plane the node of the base.
+   subroutine set_levels(frame)
+      type(frame_type), intent(inout) :: frame
+      real(wp) :: level(0:frame%storeys)
+      integer :: i
+
+      level = [(maxval(frame%y, mask=frame%storey == i), i=0, frame%storeys)]
+      frame%storey_height = level(1:) - level(:frame%storeys - 1)
+      frame%foot = [(findloc(frame%plane == i .and. frame%storey == 0, .true., dim=1), &
+                     i=1, frame%plan%planes())]
+   end subroutine set_levels
+
    !> Number the unknowns along the order of the nodes.
    subroutine number_unknowns(frame, node, member)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
-      integer :: pair(2, size(member) + size(node)), order(size(node)), leader(size(node))
-      integer :: i, j, number(6)
+      integer :: pair(2, size(member) + size(node)), order(size(node)), leader(size(node), 3)
+      integer :: i, j, number(most_columns), width
 
       do i = 1, size(member)
          pair(:, i) = member(i)%node
       end do
       do i = 1, size(node)
-         leader(i) = merge(node(i)%like, i, node(i)%like > 0)
-         pair(:, size(member) + i) = [i, leader(i)]
+         leader(i, :) = i
+         if (node(i)%like > 0) leader(i, 1) = node(i)%like
+         if (node(i)%rises_like > 0) leader(i, 2) = node(i)%rises_like
+         pair(:, size(member) + i) = [i, leader(i, 1)]
       end do
-      call order_nodes(size(node), pair, order)
-      allocate (frame%number(3, size(node)), frame%beam_rotation(size(node)), source=0)
+      if (frame%plan%is_given()) then
+         allocate (frame%plan%number(3, frame%storeys), source=0)
+         call order_upward(size(node), node%y, order)
+      else
+         call order_nodes(size(node), pair, order)
+      end if
+      allocate (frame%number(3, size(node)), frame%also(2, size(node)), frame%beam_rotation(size(node)), &
+                frame%parting(size(member)), source=0)
+      allocate (frame%share(3, size(node)), source=1.0_wp)
       do i = 1, size(node)
          do j = 1, 3
-            associate (of => merge(leader(order(i)), order(i), j == 1))
+            associate (of => leader(order(i), j))
+               if (j == 1 .and. node(of)%follows_floor()) then
+                  call number_floor(frame, order(i), frame%plan%number(:, node(of)%storey))
+                  cycle
+               end if
                if (node(of)%held(j)) cycle
                if (frame%number(j, of) == 0) then
                   frame%unknowns = frame%unknowns + 1
@@ -187,31 +236,152 @@ contains
                frame%number(j, order(i)) = frame%number(j, of)
             end associate
          end do
+         if (any(member%axial_of > 0)) call number_partings(frame, member, order(i))
          if (node(order(i))%panel%rule == '') cycle
          frame%unknowns = frame%unknowns + 1
          frame%beam_rotation(order(i)) = frame%unknowns
       end do
       do i = 1, size(member)
-         number = numbers_of(frame, node, member(i))
+         call find_numbers(frame, node, member(i), i, number, width)
          if (any(number > 0)) frame%half_width = max(frame%half_width, maxval(number) &
                                                      - minval(number, mask=number > 0))
       end do
       if (any(frame%beam_rotation > 0)) frame%half_width = max(frame%half_width, 1)
    end subroutine number_unknowns
 
-   !> Numbers of the displacements of the ends of a member: beams turn with the other side of a panel.
-   pure function numbers_of(frame, node, member) result(number)
+   !> The unknowns of a floor that move a node, with their shares: number those that are met first.
+   subroutine number_floor(frame, node, floor)
+      type(frame_type), intent(inout) :: frame
+      integer, intent(in) :: node
+      !> (3)
+      integer, intent(inout) :: floor(:)
+      integer :: j, moving, at(3)
+
+      do j = 1, 3
+         if (frame%plan%held(j) .or. floor(j) > 0) cycle
+         frame%unknowns = frame%unknowns + 1
+         floor(j) = frame%unknowns
+      end do
+      moving = 0
+      at = 0
+      associate (share => frame%plan%share(:, frame%plane(node), frame%storey(node)))
+         do j = 1, 3
+            if (floor(j) == 0 .or. .not. abs(share(j)) > 0.0_wp) cycle
+            moving = moving + 1
+            at(moving) = floor(j)
+            frame%share(moving, node) = share(j)
+         end do
+      end associate
+      frame%number(1, node) = at(1)
+      frame%also(:, node) = at(2:)
+   end subroutine number_floor
+
+   !> Both planes of a column may open: number the part of its elongation that is of the second.
+   subroutine number_partings(frame, member, node)
+      type(frame_type), intent(inout) :: frame
+      type(frame_member), intent(in) :: member(:)
+      !> Whose columns from below are meant
+      integer, intent(in) :: node
+      integer :: i
+
+      do i = 1, size(member)
+         if (member(i)%axial_of == 0 .or. member(i)%node(2) /= node) cycle
+         if (.not. member(i)%opens()) cycle
+         frame%unknowns = frame%unknowns + 1
+         frame%parting(i) = frame%unknowns
+      end do
+   end subroutine number_partings
+
+   !> Numbers of the displacements of the ends of a member: beams turn with the other side of a panel. In a
+   !> building further unknowns of its floors, and the parting of its elongation, follow.
+   subroutine find_numbers(frame, node, member, of, number, width, end_of, factor)
       type(frame_type), intent(in) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member
-      integer :: number(6), i
+      !> Number of the member
+      integer, intent(in) :: of
+      integer, intent(out) :: number(most_columns), width
+      !> See `follow_floor`
+      integer, intent(out), optional :: end_of(most_columns)
+      real(wp), intent(out), optional :: factor(most_columns)
+      integer :: i, j, follows(most_columns), parting
+      real(wp) :: share(most_columns)
 
-      number = reshape(frame%number(:, member%node), [6])
-      if (.not. is_beam(node(member%node(1)), node(member%node(2)))) return
-      do i = 1, 2
-         if (frame%beam_rotation(member%node(i)) > 0) number(3*i) = frame%beam_rotation(member%node(i))
+      number = 0
+      number(:6) = reshape(frame%number(:, member%node), [6])
+      width = 6
+      follows = 0
+      share = 1.0_wp
+      if (is_beam(node(member%node(1)), node(member%node(2)))) then
+         do i = 1, 2
+            if (frame%beam_rotation(member%node(i)) > 0) number(3*i) = frame%beam_rotation(member%node(i))
+         end do
+      end if
+      associate (a => node(member%node(1)), b => node(member%node(2)))
+         if (a%follows_floor() .and. b%follows_floor() .and. a%storey == b%storey) then
+            ! Nothing of it changes as its floor moves.
+            number([1, 4]) = 0
+         else
+            do i = 1, 2
+               associate (end_node => member%node(i))
+                  if (.not. node(end_node)%follows_floor()) cycle
+                  follows(3*i - 2) = 3*i - 2
+                  share(3*i - 2) = frame%share(1, end_node)
+                  do j = 1, 2
+                     if (frame%also(j, end_node) > 0) call add(frame%also(j, end_node), 3*i - 2, &
+                                                               frame%share(1 + j, end_node))
+                  end do
+               end associate
+            end do
+         end if
+      end associate
+      parting = frame%parting(of)
+      if (any(frame%axial_of == of)) parting = maxval(frame%parting, mask=frame%axial_of == of)
+      if (parting > 0) call add(parting, 0, 1.0_wp)
+      if (present(end_of)) end_of = follows
+      if (present(factor)) factor = share
+
+   contains
+
+      subroutine add(unknown, column, factor)
+         integer, intent(in) :: unknown, column
+         real(wp), intent(in) :: factor
+
+         width = width + 1
+         number(width) = unknown
+         follows(width) = column
+         share(width) = factor
+      end subroutine add
+   end subroutine find_numbers
+
+   !> Whether its displacement along x is that of its floor.
+   elemental logical function follows_floor(self)
+      class(frame_node), intent(in) :: self
+
+      follows_floor = self%plane > 0 .and. self%storey > 0
+   end function follows_floor
+
+   !> Whether it has springs that open.
+   elemental logical function opens(self)
+      class(frame_member), intent(in) :: self
+
+      opens = any(self%kind == axial .or. self%kind == layer)
+   end function opens
+
+   !> Add a motion (U, V, Theta) of a floor to a row of the unknowns.
+   pure subroutine put_on_floor(frame, floor, share, row)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: floor
+      real(wp), intent(in) :: share(3)
+      real(wp), intent(inout) :: row(:)
+      integer :: j
+
+      do j = 1, 3
+         associate (at => frame%plan%number(j, floor))
+            if (at > 0) row(at) = row(at) + share(j)
+         end associate
       end do
-   end function numbers_of
+   end subroutine put_on_floor
 
    !> A member between two nodes is a beam, if it is flatter than steep.
    pure logical function is_beam(a, b)
@@ -221,9 +391,10 @@ contains
    end function is_beam
 
    !> Masses and loads of the nodes, and the springs from the ground.
-   subroutine set_ground(frame, node, spring)
+   subroutine set_ground(frame, node, member, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
+      type(frame_member), intent(in) :: member(:)
       type(spring_record), intent(inout) :: spring(:)
       integer, parameter :: kind_of(3) = [shear, axial, flexure]
       character(len=2), parameter :: along(3) = ['x_', 'y_', 't_']
@@ -239,7 +410,7 @@ contains
       end do
       last = frame%member_springs
       do i = 1, size(node)
-         do j = 1, 3
+         do j = merge(2, 1, node(i)%follows_floor()), 3
             associate (at => frame%number(j, i))
                if (at == 0) cycle
                frame%inertias(at) = frame%inertias(at) + node(i)%mass(j)
@@ -267,8 +438,53 @@ contains
             frame%unknown_name(at) = 'b_'//node(i)%name
          end associate
       end do
+      do i = 1, size(frame%parting)
+         if (frame%parting(i) == 0) cycle
+         frame%part(frame%parting(i)) = member(i)%node(2)
+         frame%unknown_name(frame%parting(i)) = 'w_'//member(i)%name
+      end do
+      if (frame%plan%is_given()) call set_floors(frame, node)
       frame%pattern%last = frame%unknowns
    end subroutine set_ground
+
+   !> Masses of the floors, at their centres of mass, and loads on them.
+   subroutine set_floors(frame, node)
+      type(frame_type), intent(inout) :: frame
+      type(frame_node), intent(in) :: node(:)
+      character(len=2), parameter :: along(3) = ['U_', 'V_', 'T_']
+      character(len=12) :: floor_number
+      real(wp) :: mass(3)
+      integer :: i, j
+
+      do i = 1, frame%storeys
+         mass = frame%plan%mass(i)
+         mass(3) = frame%plan%inertia(i)
+         mass(:2) = mass(:2) + sum(node%mass(1), mask=node%storey == i .and. node%plane > 0)
+         write (floor_number, '(i0)') i
+         do j = 1, 3
+            associate (at => frame%plan%number(j, i))
+               if (at == 0) cycle
+               frame%inertias(at) = mass(j)
+               frame%unknown_name(at) = along(j)//'floor-'//floor_number
+               frame%part(at) = findloc(node%storey == i .and. node%plane > 0, .true., dim=1)
+               if (j == 1) frame%pattern(horizontal)%force(at) = -mass(j)
+               if (j == 2) frame%pattern(sideways)%force(at) = -mass(j)
+               if (j == 3) frame%reach(at) = frame%total_height
+            end associate
+         end do
+      end do
+      do i = 1, size(node)
+         if (.not. node(i)%follows_floor()) cycle
+         call frame%add_along_x(i, node(i)%load(1), frame%dead)
+         ! Shares by mass are in the direction of the load, those of nodes in their planes.
+         if (frame%plan%by_nodes) then
+            call frame%add_along_x(i, node(i)%push(1), frame%pattern(lateral)%force)
+         else
+            call put_on_floor(frame, node(i)%storey, node(i)%push(1)*frame%plan%direction, &
+                              frame%pattern(lateral)%force)
+         end if
+      end do
+   end subroutine set_floors
 
    !> Joints of layers, in the order of the springs.
    subroutine number_joints(frame, member)
@@ -303,8 +519,8 @@ contains
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
       type(spring_record), intent(inout) :: spring(:)
-      real(wp) :: axis(2), across(2), chord(6)
-      integer :: i, j, before
+      real(wp) :: axis(2), across(2), chord(6), factor(most_columns)
+      integer :: i, j, before, end_of(most_columns)
 
       associate (elements => size(member) + count(frame%beam_rotation > 0))
          allocate (frame%element(elements))
@@ -323,21 +539,25 @@ contains
             across = [axis(2), -axis(1)]
             associate (clear => e%length)
                e%node = m%node
-               e%number = numbers_of(frame, node, m)
-               e%to_basic(1, :) = [-axis, 0.0_wp, axis, 0.0_wp]
+               call find_numbers(frame, node, m, i, e%number, e%width, end_of, factor)
+               e%to_basic(1, :6) = [-axis, 0.0_wp, axis, 0.0_wp]
                ! The chord turns clockwise as its end moves across.
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
-               e%to_basic(2, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
-               e%to_basic(3, :) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
+               e%to_basic(2, :6) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
+               e%to_basic(3, :6) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
                if (m%pinned) e%to_basic(2:, :) = 0.0_wp
                e%lean(1, 3) = 1.0_wp
                e%lean(2, 6) = 1.0_wp
-               e%lean(3, :) = chord
+               e%lean(3, :6) = chord
+               call e%follow_floor(end_of, factor)
+               call share_elongation(frame, i, e)
                call e%leave_out_supports()
                e%before = before
                e%opening = count(m%kind == axial)
                e%bending = size(m%kind) - e%opening
                e%rest_along = m%axial/clear
+               ! The column is elastic along its axis once.
+               if (frame%parting(i) > 0) e%rest_along = 0.0_wp
                e%flexural_rigidity = m%bending
                e%shear_rigidity = m%sliding
                e%lumped = m%lumped
@@ -357,6 +577,22 @@ contains
          end associate
       end do
    end subroutine set_elements
+
+   !> A column in two planes has one elongation: that of joints in the second plane is an unknown, by which
+   !> the first is less; without such joints the second has none.
+   pure subroutine share_elongation(frame, i, e)
+      type(frame_type), intent(in) :: frame
+      !> Number of the member, and its element
+      integer, intent(in) :: i
+      type(frame_element), intent(inout) :: e
+
+      if (frame%axial_of(i) > 0) e%to_basic(1, :) = 0.0_wp
+      if (frame%parting(i) > 0) then
+         e%to_basic(1, e%width) = 1.0_wp
+      else if (any(frame%axial_of == i .and. frame%parting > 0)) then
+         e%to_basic(1, e%width) = -1.0_wp
+      end if
+   end subroutine share_elongation
 
    !> The nearest flexural spring, or joint of layers, of a member: its work weakens a shear spring.
    pure subroutine assign_work_source(m, spring, before, location)
@@ -391,8 +627,8 @@ contains
          at = at + 1
          associate (e => frame%element(element))
             e%node = i
-            e%number = [0, 0, frame%number(3, i), 0, 0, frame%beam_rotation(i)]
-            e%to_basic(1, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]
+            e%number([3, 6]) = [frame%number(3, i), frame%beam_rotation(i)]
+            e%to_basic(1, :6) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]
             call e%leave_out_supports()
             e%before = at - 1
             e%opening = 1

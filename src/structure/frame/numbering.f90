@@ -1,9 +1,10 @@
 !> Order of the nodes of a frame, so that those that are coupled are near each other.
 module rbs_structure_frame_numbering
+   use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: order_nodes
+   public :: order_nodes, order_upward
 
 contains
 
@@ -36,6 +37,22 @@ contains
       end do
       order = order(nodes:1:-1)
    end subroutine order_nodes
+
+   !> Nodes floor by floor from the base up: rigid floors couple all of theirs.
+   pure subroutine order_upward(nodes, y, order)
+      integer, intent(in) :: nodes
+      !> Heights (nodes)
+      real(wp), intent(in) :: y(nodes)
+      integer, intent(out) :: order(nodes)
+      logical :: is_numbered(nodes)
+      integer :: i
+
+      is_numbered = .false.
+      do i = 1, nodes
+         order(i) = minloc(y, dim=1, mask=.not. is_numbered)
+         is_numbered(order(i)) = .true.
+      end do
+   end subroutine order_upward
 
    !> The neighbours of each node: those of node i from start(i) on.
    pure subroutine list_neighbours(nodes, pair, start, neighbour)

@@ -1,0 +1,497 @@
+"""Buildings: planar frames and walls on floors that are rigid in plan."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._types import Array, ArrayLike
+from rbsdem.errors import InputError
+from rbsdem.model.column import Damping
+from rbsdem.model.frame import (
+    FrameMember,
+    FrameNode,
+    Member,
+    index_of,
+    names_of,
+    stated,
+    with_rigid_end,
+)
+from rbsdem.model.springs import Spring, layer_springs
+from rbsdem.section.frame import SCOPE_NOTE, Frame
+
+#: Places in plan that are nearer than this are one [m].
+_ONE_PLACE = 1e-3
+#: Columns of two planes are one if their E A differ by less than this share.
+_SAME = 0.02
+
+#: Scope of the results of a building, printed with them.
+PLAN_NOTE = (
+    "Floors are rigid in plan, and members do not resist torsion. A column in two planes has one "
+    "axial force, and its planar hinges do not know of each other: on a diagonal they carry 1.2 to "
+    "1.4 times what the column does. It does not lose its axial load, whatever its drift."
+)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A planar frame in a building.
+
+    Attributes
+    ----------
+    name : str
+        Its name; nodes and members are called name:N-1-1 and so on.
+    frame : Frame
+        The frame.
+    angle : float
+        Direction of its x axis in plan, from x towards y [degrees].
+    arm : float
+        Distance of this axis from the origin in plan, positive where a counterclockwise turn moves
+        it forward: -y of a frame along x, x of one along y [m].
+    along : float or None
+        Where its x axis begins, from the foot of the perpendicular of the origin: x of a frame
+        along x, y of one along y [m]. Without it no column of it is one of another frame.
+    """
+
+    name: str
+    frame: Frame
+    angle: float
+    arm: float
+    along: float | None = None
+
+    @property
+    def direction(self) -> tuple[float, float]:
+        """Cosine and sine of its angle."""
+        quarters, rest = divmod(self.angle % 360.0, 90.0)
+        cosine, sine = float(np.cos(np.radians(rest))), float(np.sin(np.radians(rest)))
+        for _ in range(int(quarters)):
+            cosine, sine = -sine, cosine
+        return cosine, sine
+
+    def places(self, x: ArrayLike) -> Array:
+        """Return the places in plan of points of the frame, shape (points, 2) [m].
+
+        Without `along` those of the axis at the foot of the perpendicular.
+        """
+        cosine, sine = self.direction
+        s = np.asarray(x, float) + self.along if self.along is not None else 0.0 * np.asarray(x)
+        return np.column_stack((s * cosine + self.arm * sine, s * sine - self.arm * cosine))
+
+
+class Building(Frame):
+    """Planar frames and walls that stand in plan and share rigid floors.
+
+    Every floor moves along x and y and turns about its centre of mass; each frame follows in its
+    plane. Frames are planar as everywhere, with all of their members and springs. A column where
+    two of them cross is one column: its nodes rise together, it has one axial force, and springs of
+    both planes. Names of nodes and members have that of the frame before them: x-1:C-2-1.
+
+    Parameters
+    ----------
+    frames : sequence of tuple
+        (frame, angle, arm) or (frame, angle, arm, along), see `Plane`. The masses of its nodes and
+        floors move in both directions. Dead loads, masses, springs and losses are those of each
+        frame; kinematics, base damping and patterns those of the building.
+    names : sequence of str, optional
+        Names of the frames; by default x-1, x-2, ... for frames along x, y-1, ... for those along
+        y, and frame-1, ... for others.
+    centres : pair of float, or sequence of pairs, optional
+        Centre of mass of all floors, or of each, in plan [m]; the origin by default.
+    floor_mass : float or sequence of float, optional
+        Masses of the floors at their centres besides those of the frames [kg]; they do not move
+        upward.
+    inertia : float or sequence of float, optional
+        Rotary inertia of all floors, or of each, about its centre [kg m2]. Without it that of the
+        masses of the frames where they stand: of frames without `along` on the line of the frame.
+    kinematics, pattern, collapse, damping
+        As of `rbsdem.Frame`; shares by mass act at the centres of mass, and the largest drift of a
+        storey is that of any frame.
+    direction : float, optional
+        Of the lateral load, from x towards y [degrees].
+    control_node : str, optional
+        A node whose displacement in its plane is that of the top; by default it is that of the
+        centre of the roof along `direction`.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong: floors that no frame keeps from turning, columns
+        of three frames, names.
+    """
+
+    #: Frames in their places; centres of mass, masses and rotary inertia of the floors; nodes that
+    #: rise with one of another frame, and columns that are one of another, by their names.
+    planes: tuple[Plane, ...]
+    direction: float
+    centres: Array
+    plan_mass: Array
+    inertia: Array
+    rises: dict[str, str]
+    axial_of: dict[str, str]
+    _given: dict[str, Any]
+
+    def __init__(
+        self,
+        frames: Sequence[tuple[Any, ...]],
+        *,
+        names: Sequence[str] | None = None,
+        centres: ArrayLike = (0.0, 0.0),
+        floor_mass: ArrayLike = 0.0,
+        inertia: ArrayLike | None = None,
+        kinematics: Literal["small", "pdelta"] = "small",
+        pattern: Literal["triangular", "uniform", "modal", "nodes"] = "triangular",
+        direction: float = 0.0,
+        collapse: Literal["storey", "roof"] = "storey",
+        damping: Damping | float | None = None,
+        control_node: str = "",
+    ) -> None:
+        planes = _planes(frames, names)
+        floors = max(int(one.frame.parts.floor.max(initial=0)) for one in planes)
+        if floors == 0:
+            raise InputError(
+                "building: its frames have no floors; give them grids, or their nodes floors "
+                "(FrameNode(floor=...))"
+            )
+        given: dict[str, Any] = {"frames": tuple(frames), "names": names, "centres": centres}
+        given |= {"floor_mass": floor_mass, "inertia": inertia, "kinematics": kinematics}
+        given |= {"pattern": pattern, "direction": direction, "collapse": collapse}
+        given |= {"damping": damping, "control_node": control_node}
+        put = self.__dict__.__setitem__
+        put("_given", given)
+        put("planes", planes)
+        put("direction", _arguments.number(direction, "building: direction"))
+        put("centres", _by_floor(centres, floors, "centres", 2))
+        put("plan_mass", _by_floor(floor_mass, floors, "floor_mass")[:, 0])
+        laid = [_laid(one) for one in planes]
+        rises, axial = _shared(planes, laid)
+        put("rises", rises)
+        put("axial_of", axial)
+        own = _inertia_of(planes, laid, self.centres)
+        put("inertia", own if inertia is None else _by_floor(inertia, floors, "inertia")[:, 0])
+        shared = {*axial, *axial.values()}
+        super().__init__(
+            kinematics=kinematics,
+            pattern=pattern,
+            collapse=collapse,
+            control_node=control_node,
+            nodes=[node for nodes, _ in laid for node in nodes],
+            members=[_held_up(one, shared) for _, members in laid for one in members],
+            damping=damping,
+            losses={
+                f"{one.name}:{member}": time
+                for one in planes
+                for member, time in (one.frame.losses or {}).items()
+            }
+            or None,
+        )
+
+    def __repr__(self) -> str:
+        names = ", ".join(plane.name for plane in self.planes)
+        return f"Building({len(self.storey_heights)} storeys, frames {names})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt, (type(self), self._given)
+
+    def changed(self, **changes: Any) -> Building:
+        """Return the building with other parameters in place of some of its own."""
+        return type(self)(**self._given | changes)
+
+    @property
+    def scope_note(self) -> str:
+        """Scope of results of the building, printed with them."""
+        return f"{SCOPE_NOTE} {PLAN_NOTE}"
+
+    def plane(self, name: str) -> Plane:
+        """Return a frame in its place, by its name."""
+        names = tuple(plane.name for plane in self.planes)
+        return self.planes[index_of(name, names, "frame")]
+
+    @cached_property
+    def corners(self) -> Array:
+        """Corners of the smallest rectangle about all frames in plan, shape (4, 2) [m]."""
+        places = np.vstack([one.places(np.unique(one.frame.parts.x)) for one in self.planes])
+        (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
+        return np.array([(west, south), (east, south), (east, north), (west, north)])
+
+    def frame_of(self, name: str) -> Frame:
+        """Return a frame as it stands in the building: with the axial forces and kinds there."""
+        known: dict[str, Frame] = vars(self).setdefault("_frames", {})
+        if name in known:
+            return known[name]
+        own, prefix = self.plane(name).frame, f"{name}:"
+        of_all = dict(zip(self.parts.members, self.parts.compression.tolist(), strict=True))
+        compression = np.array([of_all[prefix + member] for member in own.parts.members])
+        found = copy(own)
+        object.__setattr__(found, "kinematics", self.kinematics)
+        vars(found)["parts"] = replace(own.parts, compression=compression, mass=self.parts.mass)
+        vars(found)["geometry"] = own.geometry
+        vars(found)["kinds"] = {
+            member: with_rigid_end(self.kinds[prefix + member], kind.rigid_end)
+            for member, kind in own.kinds.items()
+        }
+        return known.setdefault(name, found)
+
+    def _state(self, *cells: Any, **more: Any) -> _core.Statement:
+        """Return the groups of a case file."""
+        own: dict[str, Any] = {
+            "kinematics": None if self.kinematics == "small" else self.kinematics,
+            "pattern": None if self.pattern == "triangular" else self.pattern,
+            "collapse": None if self.collapse == "storey" else self.collapse,
+            "control_node": _core.Text(self.control_node) if self.control_node else None,
+            "direction": self.direction or None,
+        }
+        parts = [_core.group("frame", own)]
+        for plane in self.planes:
+            own = {"name": _core.Text(plane.name), "angle": plane.angle or None}
+            own |= {"arm": plane.arm or None, "along": plane.along}
+            parts.append(_core.group("plane", own))
+        for i, (mass, inertia, centre) in enumerate(
+            zip(self.plan_mass, self.inertia, self.centres, strict=True)
+        ):
+            values = {
+                "mass": mass,
+                "inertia": inertia,
+                "centre_x": centre[0],
+                "centre_y": centre[1],
+            }
+            numbers = {k: float(v) or None for k, v in values.items()}
+            parts.append(_core.group("floor", {"floor": i + 1, **numbers}))
+        names = names_of([member.kind for member in self.members])
+        layers: dict[Spring, int] = {}
+        for (_, kind), name in names.items():
+            parts += kind._groups(name, layers)
+        parts.append(layer_springs(layers))
+        for node in self.nodes:
+            at = node.name.split(":")[0]
+            parts += node._groups(plane=at, rises_with=self.rises.get(node.name))
+        for member in self.members:
+            name = names[stated(member.kind)]
+            parts.append(member._group(name, axial_of=self.axial_of.get(member.name)))
+        parts += self.loss_groups()
+        if isinstance(self.damping, Damping):
+            parts.append(self.damping.statement())
+        return _core.joined(parts)
+
+    def with_kinds(self, kinds: Mapping[str, FrameMember]) -> Building:
+        """Return the building with other kinds of members in place of some of `named_kinds`."""
+        frames = []
+        for plane in self.planes:
+            names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
+            own = {
+                name: kinds[names[stated(kind)]]
+                for name, kind in plane.frame.named_kinds.items()
+                if names.get(stated(kind)) in kinds
+            }
+            more = () if plane.along is None else (plane.along,)
+            frames.append((plane.frame.with_kinds(own), plane.angle, plane.arm, *more))
+        return self.changed(frames=frames)
+
+    def without(self, *members: str) -> Building:
+        """Return the building after the loss of members: frame:C-line-storey, and so on."""
+        lost: dict[str, list[str]] = {}
+        for member in members:
+            index_of(member, self.parts.members, "member")
+            lost.setdefault(member.split(":")[0], []).append(member.split(":")[1])
+        frames = []
+        for plane in self.planes:
+            more = () if plane.along is None else (plane.along,)
+            frame = plane.frame.without(*lost.get(plane.name, ()))
+            frames.append((frame, plane.angle, plane.arm, *more))
+        return self.changed(frames=frames)
+
+
+def _rebuilt(kind: type[Building], given: dict[str, Any]) -> Building:
+    return kind(**given)
+
+
+def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
+    """Return the frames in their places, with names."""
+    found: list[Plane] = []
+    given = list(_arguments.several(frames, "building: frames", "tuples (frame, angle, arm)"))
+    if not given:
+        raise InputError("building: it has no frames; give tuples (frame, angle, arm)")
+    if names is not None and len(names) != len(given):
+        raise InputError(f"building: {len(names)} names for {len(given)} frames; give one for each")
+    counts: dict[str, int] = {}
+    for i, one in enumerate(given):
+        if not (isinstance(one, tuple) and len(one) in (3, 4) and isinstance(one[0], Frame)):
+            raise InputError(
+                f"building: frames[{i}] = {_arguments.shown(one)} must be a tuple "
+                "(frame, angle, arm), or (frame, angle, arm, along) with the begin of its axis"
+            )
+        numbers = [_arguments.number(value, f"building: frames[{i}]") for value in one[1:]]
+        frame: Frame = one[0]
+        if frame.damped:
+            raise InputError(
+                f"building: frames[{i}] has damping of its own; give it to the building"
+            )
+        letter = {0.0: "x", 90.0: "y"}.get(numbers[0] % 180.0, "frame")
+        counts[letter] = counts.get(letter, 0) + 1
+        name = str(names[i]) if names is not None else f"{letter}-{counts[letter]}"
+        if ":" in name or not name or name in [plane.name for plane in found]:
+            raise InputError(
+                f"building: {name!r} is no name of a frame of its own; names differ and have "
+                "no colon"
+            )
+        found.append(Plane(name, frame, *numbers))
+    return tuple(found)
+
+
+def _by_floor(given: Any, floors: int, name: str, width: int = 1) -> Array:
+    """Return numbers or pairs for each floor, shape (floors, width)."""
+    values = np.asarray(given, float)
+    try:
+        values = np.broadcast_to(values.reshape(-1, width), (floors, width))
+    except ValueError:
+        raise InputError(
+            f"building: {name} has {values.size // width} values for {floors} floors; give one, or "
+            "one for each"
+        ) from None
+    if not np.isfinite(values).all():
+        raise InputError(f"building: {name} has values that are not finite; correct them")
+    return values
+
+
+def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
+    """Return the nodes and members of a frame in a building."""
+    frame, parts, prefix = plane.frame, plane.frame.parts, f"{plane.name}:"
+    own = {node.name: node for node in frame.nodes}
+    grid = _grid_masses(frame)
+    panels = {spring.member for spring in parts.springs if spring.group == "panel"}
+    ends = {parts.nodes[i] for i in parts.ends.ravel()}
+    nodes = []
+    for name, x, y, floor in zip(
+        parts.nodes, parts.x.tolist(), parts.y.tolist(), parts.floor.tolist(), strict=True
+    ):
+        if name not in ends and floor == 0:
+            continue
+        node, mass = own.get(name, FrameNode(name)), grid.get(name, 0.0)
+        support = frame.supports.get(name, "free")
+        panel = (node.panel or frame.panel) if name in panels else None
+        if node.moves_with and not floor > 0:
+            raise InputError(
+                f"building: node {prefix}{name}: moves_with is of a planar frame; in a building "
+                "nodes of a floor move with it"
+            )
+        nodes.append(
+            replace(
+                node,
+                name=prefix + name,
+                x=x,
+                y=y,
+                floor=floor if floor >= 0 else None,
+                support="free" if support == "springs" else support,
+                mass=node.mass + mass,
+                panel=panel,
+                moves_with="",
+            )
+        )
+    members = [
+        Member(
+            prefix + name,
+            prefix + parts.nodes[where.start],
+            prefix + parts.nodes[where.end],
+            with_rigid_end(frame.kinds[name], 0.0),
+            where.rigid,
+            where.load,
+        )
+        for name, where in frame.geometry.items()
+    ]
+    return nodes, members
+
+
+def _grid_masses(frame: Frame) -> dict[str, float]:
+    """Return the masses of floors at the nodes of a grid, by the widths beside them."""
+    bays: Any = frame.bays or ()
+    storeys: Any = frame.storeys or ()
+    masses: Any = frame.floor_mass
+    widths = np.array([0.0, *bays]) + np.array([*bays, 0.0])
+    shares = widths / widths.sum() if bays else np.ones(1)
+    return {
+        f"N-{line + 1}-{floor + 1}": float(share * masses[min(floor, len(masses) - 1)])
+        for floor in range(len(storeys))
+        for line, share in enumerate(shares)
+    }
+
+
+def _inertia_of(planes: Sequence[Plane], laid: Sequence[Any], centres: Array) -> Array:
+    """Return the rotary inertia of the masses of frames about the centres of the floors."""
+    found = np.zeros(len(centres))
+    for plane, (nodes, _) in zip(planes, laid, strict=True):
+        cosine, sine = plane.direction
+        for node in nodes:
+            if not (node.floor and node.mass):
+                continue
+            x, y = centres[node.floor - 1]
+            across = plane.arm - (x * sine - y * cosine)
+            along = 0.0
+            if plane.along is not None:
+                along = plane.along + (node.x or 0.0) - (x * cosine + y * sine)
+            found[node.floor - 1] += node.mass * (across**2 + along**2)
+    return found
+
+
+def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return nodes that rise with one of another plane, and columns that are one of another."""
+    rises: dict[str, str] = {}
+    axial: dict[str, str] = {}
+    first: dict[tuple[float, ...], FrameNode] = {}
+    columns: dict[tuple[str, str], Member] = {}
+    for plane, (nodes, members) in zip(planes, laid, strict=True):
+        if plane.along is None:
+            continue
+        at = {}
+        for node, place in zip(nodes, plane.places([node.x for node in nodes]), strict=True):
+            steps = np.round(np.array([*place, node.y]) / _ONE_PLACE).tolist()
+            leader = first.setdefault(tuple(steps), node)
+            at[node.name] = leader.name
+            held = node.support in ("fixed", "pinned", "roller")
+            if leader is not node and not (
+                held and leader.support in ("fixed", "pinned", "roller")
+            ):
+                rises[node.name] = leader.name
+        upright = {node.name: node for node in nodes}
+        for member in members:
+            if abs((upright[member.start].x or 0.0) - (upright[member.end].x or 0.0)) > _ONE_PLACE:
+                continue
+            key = at[member.start], at[member.end]
+            other = columns.setdefault(key, member)
+            if other is member:
+                continue
+            if other.name.split(":")[0] == plane.name:
+                continue
+            if other.name in axial.values():
+                raise InputError(
+                    f"building: column {member.name} is one of three planes, with {other.name}; a "
+                    "column has two"
+                )
+            stiff = [one.kind.modulus * one.kind.area for one in (member, other)]
+            if abs(stiff[0] - stiff[1]) > _SAME * max(stiff):
+                raise InputError(
+                    f"building: columns {other.name} and {member.name} are at one place, and their "
+                    f"E A are {stiff[1]:.4g} and {stiff[0]:.4g} N; give both the same section, or "
+                    "move one of the frames"
+                )
+            axial[member.name] = other.name
+    return rises, axial
+
+
+def _held_up(member: Member, shared: set[str]) -> Member:
+    """Return a member that, as a column of two planes, does not lose its axial load."""
+    if member.name not in shared or member.kind.failure_drift is None:
+        return member
+    kind = _without_failure(member.kind)
+    return replace(member, kind=kind)
+
+
+def _without_failure(kind: FrameMember) -> FrameMember:
+    values: dict[str, Any] = {name: getattr(kind, name) for name in kind.__dataclass_fields__}
+    for name in ("flexure", "shear"):
+        values[name] = dict(values[name]) if values[name] else None
+    return FrameMember(**values | dict.fromkeys(("failure_drift", "failure_load", "shear_drift")))

@@ -1,0 +1,264 @@
+"""Buildings in plan: planar frames on rigid floors, held against closed forms and planar frames."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_building import MORE, B, C
+
+import rbsdem
+from rbsdem.errors import AccuracyWarning
+from rbsdem.frames import Frame, FrameMember, FrameNode, Member
+from rbsdem.springs import Bilinear, Elastic, Layered
+
+pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+
+POST = FrameMember(3e10, 1.0, 1.0, ends="pinned")
+
+
+def line(spring, mass=0.0, load=0.0, height=3.0):
+    """Return a storey whose horizontal stiffness is a spring."""
+    top = {"floor": 1, "mass": mass, "load_y": -load}
+    return Frame(
+        nodes=[
+            FrameNode("foot", 0.0, 0.0, support="fixed", floor=0),
+            FrameNode("anchor", -4.0, height, support="fixed"),
+            FrameNode("top", 0.0, height, **top),
+        ],
+        members=[
+            Member("post", "foot", "top", POST),
+            Member("spring", "anchor", "top", FrameMember.strut(spring)),
+        ],
+    )
+
+
+def yielding(k, force):
+    return line(Bilinear(k, force / k, 1e-9 * k))
+
+
+@pytest.fixture(scope="module")
+def grid():
+    """Two frames along x and three along y that share their columns, drawn by sections."""
+    more = MORE | {"ends": 1.0, "diaphragm": True}
+    along_x = rbsdem.Frame.grid([3.2, 3.0], [5.6, 4.0], columns=C, beams=B, **more)
+    along_y = rbsdem.Frame.grid([3.2, 3.0], [5.0], columns=C, beams=B, **more)
+    along_x = replace(along_x, floor_mass=6e4)
+    frames = [(along_x, 0.0, 0.0, 0.0), (along_x, 0.0, -5.0, 0.0)]
+    frames += [(along_y, 90.0, x, 0.0) for x in (0.0, 5.6, 9.6)]
+    return rbsdem.Building(frames, kinematics="pdelta", centres=(4.9, 2.8))
+
+
+def test_an_eccentric_storey_yields_as_by_hand():
+    frames = [(yielding(60e6, 600e3), 0.0, 5.0), (yielding(30e6, 300e3), 0.0, -5.0)]
+    frames += [(yielding(40e6, 500e3), 90.0, x) for x in (-8.0, 8.0)]
+    building = rbsdem.Building(frames)
+    # U and Theta from two equations, until each frame along x yields.
+    stiff = np.array([[90e6, 5.0 * 30e6], [5.0 * 30e6, 25.0 * 90e6 + 2 * 64.0 * 40e6]])
+    elastic = np.linalg.solve(stiff, [1.0, 0.0])
+    first = 300e3 / (30e6 * (elastic @ [1.0, -5.0]))
+    push = rbsdem.cyclic(building, displacement=[0.011], corners=True)
+    assert push.force[1] == pytest.approx(first, rel=1e-9)
+    assert f"{push.force[1]:.2f}" == "789162.56"
+    last = rbsdem.cyclic(building, force=[900e3 * (1.0 - 1e-12)])
+    assert 1e3 * last.displacement[-1] == pytest.approx(11.46484, abs=5e-6)
+    # The softer frame, at y = 5, moves on: clockwise.
+    assert last.floor_rotation[-1, 0] == pytest.approx(-2.9297e-4, abs=5e-9)
+    assert [event.member for event in push.events] == ["x-2:spring"]
+    # Equilibrium with the load at the centre of mass
+    assert push.base_shear_x == pytest.approx(push.force, rel=1e-9)
+    assert push.base_torque == pytest.approx(0.0 * push.force, abs=1e-6)
+    assert push.base_shear_y == pytest.approx(0.0 * push.force, abs=1e-6)
+
+
+def peterson(turned=0.0):
+    """Return the two-storey eccentric building of SAP2000's example 1-024 [ft, kip]."""
+    column, beam = FrameMember(3.5e5, 4.0, 1.25), FrameMember(5e5, 1.0, 2.61)
+    along_x, along_y = (Frame([13.0] * 2, [bay] * 2, column, beam) for bay in (35.0, 25.0))
+    frames = [(along_x, turned, -y, 0.0) for y in (0.0, 25.0, 50.0)]
+    frames += [(along_y, turned + 90.0, x, 0.0) for x in (0.0, 35.0, 70.0)]
+    c, s = np.cos(np.radians(turned)), np.sin(np.radians(turned))
+    centre = 38.0 * c - 27.0 * s, 38.0 * s + 27.0 * c
+    return rbsdem.Building(
+        frames, centres=centre, floor_mass=6.21118, inertia=0.0, direction=turned
+    )
+
+
+def test_petersons_building():
+    modes = rbsdem.modes(peterson(), 4)
+    assert [f"{period:.4f}" for period in modes.period] == ["0.2271", "0.2156", "0.0733", "0.0720"]
+    # A flat spectrum of 0.4 g along x, square root of the sum of squares
+    roof = 0.4 * 32.2 / modes.omega**2 * 6.21118 * modes.floor_x.sum(axis=0) * modes.floor_x[1]
+    assert f"{np.hypot.reduce(roof):.4f}" == "0.0201"
+    assert modes.participation_x.sum() == pytest.approx(1.0, rel=1e-9)
+    assert modes.participation_y.sum() == pytest.approx(1.0, rel=1e-9)
+
+
+def test_a_building_that_is_turned_is_the_same():
+    straight, turned = peterson(), peterson(30.0)
+    periods = [rbsdem.modes(each, 4).period for each in (straight, turned)]
+    np.testing.assert_allclose(periods[1], periods[0], rtol=1e-12)
+    one, two = (rbsdem.pushover(each, drift=0.01, points=2) for each in (straight, turned))
+    for name in ("force", "displacement", "floor_rotation", "plane_shear"):
+        a, b = getattr(one, name), getattr(two, name)
+        np.testing.assert_allclose(b, a, rtol=0, atol=1e-12 * np.abs(a).max(), err_msg=name)
+
+
+def test_one_frame_is_itself_in_every_direction(grid):
+    frame = replace(grid.planes[0].frame, kinematics="pdelta")
+    alone = rbsdem.pushover(frame, drift=0.015, points=5)
+    building = rbsdem.Building([(frame, 0.0, 0.0)], kinematics="pdelta")
+    push = rbsdem.pushover(building, drift=0.015, points=5)
+    inside = push.frame("x-1")
+    for name in ("x", "moment_from", "member_axial", "base_shear"):
+        a, b = getattr(alone, name)[-1], getattr(inside, name)[-1]
+        np.testing.assert_allclose(b, a, rtol=0, atol=1e-12 * np.abs(a).max(), err_msg=name)
+    assert push.force[-1] == pytest.approx(alone.force[-1], rel=1e-13)
+    assert push.summary["peak_base_shear"] == pytest.approx(np.abs(alone.force).max(), rel=1e-12)
+    # The dead load moves the frame by round-off along x before it is pushed.
+    assert alone.summary["peak_base_shear"] == pytest.approx(np.abs(alone.force).max(), rel=1e-12)
+    assert [event.name for event in inside.events] == [event.name for event in alone.events]
+    turned = rbsdem.Building([(frame, 90.0, 0.0)], kinematics="pdelta", direction=90.0)
+    other = rbsdem.pushover(turned, drift=0.015, points=5)
+    np.testing.assert_array_equal(other.floor_y, push.floor_x)
+    assert not np.any((other.floor_x, other.floor_rotation))
+    # Two of it without eccentricity are one of twice everything.
+    pair = rbsdem.Building([(frame, 0.0, 5.0), (frame, 0.0, -5.0)], kinematics="pdelta")
+    both = rbsdem.pushover(pair, drift=0.015, points=5)
+    assert both.force[-1] == pytest.approx(2.0 * push.force[-1], rel=1e-12)
+    assert np.abs(both.floor_rotation).max() < 1e-14
+    assert pickle.loads(pickle.dumps(pair)) == pair
+
+
+def test_a_column_in_two_planes_has_one_axial_force(grid):
+    parts = grid.parts
+    axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
+    assert len(grid.axial_of) == 12
+    for second, first in grid.axial_of.items():
+        assert axial[second] == pytest.approx(axial[first], rel=1e-12)
+    # All loads on all beams
+    loads = 2 * 2 * 23e3 * 9.6 + 3 * 2 * 23e3 * 5.0
+    feet = [axial[name] for name in axial if name.startswith("x") and name.endswith("-1")]
+    columns = [one for one in axial if one.startswith("x") and ":C-" in one and one[-2:] == "-1"]
+    assert sum(axial[one] for one in columns) == pytest.approx(loads, rel=1e-12)
+    assert len(feet) > len(columns)
+    quake = rbsdem.pushover(grid, drift=0.01, points=3, direction=40.0)
+    for second, first in grid.axial_of.items():
+        frames, names = zip(*(one.split(":") for one in (first, second)), strict=True)
+        one, two = (
+            quake.frame(frame).member(name).axial for frame, name in zip(frames, names, strict=True)
+        )
+        np.testing.assert_allclose(two, one, rtol=1e-9)
+
+
+def test_joints_of_layers_of_both_planes_open_in_series():
+    ends = [Layered([(-0.2, Elastic(k)), (0.2, Elastic(k))]) for k in (4e8, 7e8)]
+    frames = []
+    for joint in ends:
+        column = FrameMember(3e10, 0.16, 2e-3, flexure={0.0: joint})
+        nodes = [
+            FrameNode("foot", 0.0, 0.0, support="fixed", floor=0),
+            FrameNode("top", 0.0, 3.0, floor=1, load_y=-2e5, mass=1e3),
+        ]
+        frames.append(Frame(nodes=nodes, members=[Member("column", "foot", "top", column)]))
+    arms = [(frames[0], 0.0, 0.0, 0.0), (frames[1], 90.0, 0.0, 0.0)]
+    arms.append((line(Elastic(1e7)), 0.0, 4.0))
+    building = rbsdem.Building(arms)
+    rows = rbsdem.cyclic(building, displacement=[1e-9])
+    flexible = 3.0 / (3e10 * 0.16) + 1 / 8e8 + 1 / 14e8
+    assert rows.frame("x-1").y[-1, 1] == pytest.approx(-4e5 * flexible, rel=1e-9)
+    for name, k in (("x-1", 8e8), ("y-1", 14e8)):
+        assert rows.frame(name).springs["opening"][-1, 0] == pytest.approx(-4e5 / k, rel=1e-9)
+
+
+@pytest.mark.parametrize("load", [0.0, 5e6])
+def test_second_order_work_of_columns_in_translation_and_torsion(load):
+    # k - P/h along x and y, and the sum of r^2 (k - P/h) about the centre
+    springs = {0.0: 20e6, 90.0: 30e6}
+    frames = [
+        (line(Elastic(k), mass=1e5, load=load), angle, arm)
+        for angle, k in springs.items()
+        for arm in (-4.0, 4.0)
+    ]
+    modes = rbsdem.modes(rbsdem.Building(frames, inertia=3e6, kinematics="pdelta"), 3)
+    net = {angle: 2 * (k - load / 3.0) for angle, k in springs.items()}
+    squares = sorted([net[0.0] / 4e5, net[90.0] / 4e5, 16.0 * sum(net.values()) / 3e6])
+    assert np.sort(modes.omega**2) == pytest.approx(squares, rel=1e-10)
+
+
+def test_energy_of_a_record_in_two_directions(grid):
+    time = np.arange(0.0, 1.0, 0.01)
+    swing = 6.0 * np.sin(np.pi * time)
+    pair = swing * np.sin(7.0 * time), -swing * np.sin(5.0 * time)
+    motions = tuple(rbsdem.GroundMotion(each, 0.01) for each in pair)
+    settings = {"method": "newmark", "dt": 0.01, "motion": True}
+    with pytest.warns(AccuracyWarning, match="both of its planes are beyond yield"):
+        quake = rbsdem.time_history(grid, motions, **settings)
+    # Joints of layers and their snaps; of one frame alone it is 8e-3.
+    assert quake.summary["relative_energy_residual"] < 1e-3
+    assert set(quake.both_planes) <= set(grid.axial_of.values())
+    # What a corner does, from the frames that meet there
+    at = quake.drift_at((9.6, 5.0))
+    of_frames = [quake.frame(name).storey_drift for name in ("x-2", "y-3")]
+    np.testing.assert_allclose(np.stack(of_frames, axis=-1), at, atol=1e-12)
+    largest = np.abs([quake.frame(one.name).storey_drift for one in grid.planes]).max()
+    assert quake.corner_drift.max() >= largest
+    # Forces of the ground balance those of the masses.
+    mass = 6e4 * 2
+    total = quake.plane_shear @ [plane.direction[1] for plane in grid.planes]
+    moved = quake.frame("y-1").floor_acceleration
+    turned = [quake.frame(f"y-{i}").floor_acceleration for i in (1, 2, 3)]
+    centre = turned[0] + (turned[2] - turned[0]) * 4.9 / 9.6
+    assert moved.shape == centre.shape
+    lost = np.abs(total + mass * centre.sum(axis=1))
+    assert lost.max() < 1e-6 * np.abs(total).max()
+
+
+def test_a_whole_building_comes_back(grid):
+    again = pickle.loads(pickle.dumps(grid))
+    assert again == grid
+    assert rbsdem.Building(**grid._given) == grid
+    one, two = (rbsdem.pushover(each, drift=0.003, points=2) for each in (grid, again))
+    np.testing.assert_array_equal(one.force, two.force)
+
+
+REFUSED = [
+    (lambda f: rbsdem.Building([(f, 0.0, 3.0)]), "floor 1: the planes leave it free to turn"),
+    (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
+    (lambda f: rbsdem.Building([]), "it has no frames"),
+    (lambda f: rbsdem.Building([(f, 0.0)]), "must be a tuple"),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a:b"]), "is no name of a frame"),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a", "b"]), "2 names for 1 frames"),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], direction=90.0), "has a part along y"),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], inertia=[1.0, 2.0]), "2 values for 1 floors"),
+    (lambda f: rbsdem.Building([(replace(f, damping=0.05), 0, 0)]), "has damping of its own"),
+    (lambda f: rbsdem.pushover(f, drift=0.01, direction=20.0), "direction is for buildings"),
+    (
+        lambda f: rbsdem.time_history(
+            f, [0.0, 1.0], ground_acceleration_y=[0.0, 1.0], method="newmark", dt=0.1
+        ),
+        "nothing of it moves along y",
+    ),
+    (
+        lambda f: rbsdem.Building([(f, 0.0, 0.0)]).without("x-2:post"),
+        "is not of this frame",
+    ),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)]).plane("x-2"), "is not of this frame"),
+]
+
+
+@pytest.mark.parametrize(("made", "told"), REFUSED)
+def test_refusals_name_the_fault(made, told):
+    with pytest.raises(rbsdem.InputError, match=told):
+        made(line(Elastic(1e7), mass=1e3, load=1e4))
+
+
+def test_columns_at_one_place_are_alike(grid):
+    frame = line(Elastic(1e7), mass=1e3, load=1e4)
+    thin = replace(
+        frame, members=[replace(frame.members[0], kind=replace(POST, area=0.5)), frame.members[1]]
+    )
+    with pytest.raises(rbsdem.InputError, match="give both the same section"):
+        rbsdem.Building([(frame, 0.0, 0.0, 0.0), (thin, 90.0, 0.0, 0.0)])
+    with pytest.raises(rbsdem.InputError, match="is one of three planes"):
+        rbsdem.Building([(frame, angle, 0.0, 0.0) for angle in (0.0, 90.0, 45.0)])
