@@ -565,7 +565,10 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
     table = found.to_pandas()
     states = {"status": list(found.counts), "runs": list(found.counts.values())}
     yield Sheet("Runs", str(found), table=data_frame(states))
-    yield from _warnings(table)
+    noted = table[["warnings", "error"]].melt(var_name="kind", value_name="text")
+    noted = noted[noted["text"] != ""].value_counts().rename("runs").reset_index()
+    if len(noted):
+        yield Sheet("Warnings and errors", table=noted.head(20))
     names = list(found.measures)
     measured = table.assign(**table[names].abs()).groupby("column", observed=True)[names]
     shares = measured.quantile([0.0, 0.16, 0.5, 0.84, 1.0]).stack().unstack(1)
@@ -573,14 +576,6 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
     words = "Their sizes over motions and scales, in SI; without runs that failed."
     yield Sheet("Measures", words, table=shares.rename_axis(["column", "measure"]).reset_index())
     yield Sheet("All runs", table=table, beside=True)
-
-
-def _warnings(runs: DataFrame) -> Iterator[Sheet]:
-    """Yield what runs have told, and how many of them."""
-    told = runs[["warnings", "error"]].melt(var_name="kind", value_name="text")
-    told = told[told["text"] != ""].value_counts().rename("runs").reset_index()
-    if len(told):
-        yield Sheet("Warnings and errors", table=told.head(20))
 
 
 @sheets_of.register
@@ -619,7 +614,8 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
     if curves:
         yield Sheet("Fragility", _FITTED, (partial(many.fragilities, curves),), data_frame(fitted))
     table = found.to_pandas()
-    yield from _warnings(table)
+    ended = table["status"].value_counts().rename("runs").reset_index()
+    yield Sheet("How the runs ended", table=ended)
     yield Sheet("Runs", table=table, beside=True)
     scope = f"{SCOPE_NOTE} " if isinstance(structure, Frame) else ""
     yield Sheet("Assumed", f"{scope}{_LEFT_OUT}")
