@@ -47,8 +47,9 @@ def test_a_lap_limits_the_bars_of_the_foot_alone():
         assert lapped.k_post < 1e-3 * plain.k_post or lapped.k_post <= plain.k_post
         assert lapped.isotropic_hardening == 0.0
     assert bars(LAPPED, 1) == bars(whole, 1)
+    # So slender that it does not fail in shear.
     push = [
-        rbsdem.pushover(rbsdem.section.column(one, 1.8288, axial_load=5e5), drift=0.02).force.max()
+        rbsdem.pushover(rbsdem.section.column(one, 3.0, axial_load=5e5), drift=0.02).force.max()
         for one in (LAPPED, whole)
     ]
     assert share - 0.06 < push[0] / push[1] < 1.0
