@@ -10,6 +10,7 @@ from test_building import MORE, B, C
 import rbsdem
 from rbsdem.errors import AccuracyWarning
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
+from rbsdem.run.case import case_of_text
 from rbsdem.springs import Bilinear, Elastic, Layered
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
@@ -214,10 +215,16 @@ def test_energy_of_a_record_in_two_directions(grid):
     assert lost.max() < 1e-6 * np.abs(total).max()
 
 
-def test_a_whole_building_comes_back(grid):
+def test_a_whole_building_comes_back(grid, tmp_path):
     again = pickle.loads(pickle.dumps(grid))
     assert again == grid
     assert rbsdem.Building(**grid._given) == grid
+    loading = "&loading drive = 'displacement', values = 0.01 /\n"
+    case = case_of_text(grid.to_namelist() + loading)
+    assert case.column == grid
+    saved = case.run()
+    saved.save(tmp_path / "push.npz")
+    assert rbsdem.read_result(tmp_path / "push.npz") == saved
     one, two = (rbsdem.pushover(each, drift=0.003, points=2) for each in (grid, again))
     np.testing.assert_array_equal(one.force, two.force)
 
@@ -226,6 +233,7 @@ REFUSED = [
     (lambda f: rbsdem.Building([(f, 0.0, 3.0)]), "floor 1: the planes leave it free to turn"),
     (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
     (lambda f: rbsdem.Building([]), "it has no frames"),
+    (lambda f: rbsdem.Building.grid([3.0], [5.0]), "there is no grid in plan yet"),
     (lambda f: rbsdem.Building([(f, 0.0)]), "must be a tuple"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a:b"]), "is no name of a frame"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a", "b"]), "2 names for 1 frames"),

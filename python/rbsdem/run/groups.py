@@ -343,9 +343,11 @@ def building_of(groups: Groups) -> Building:
     losses = {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])}
     nodes = {given["name"]: given for given in groups.get("node", [])}
     in_plane = {name: given["plane"] for name, given in nodes.items()}
+    of_building = ("plane", "rises_with")
+    plain = [{k: v for k, v in one.items() if k not in of_building} for one in nodes.values()]
     leaders: dict[tuple[str, int], str] = {}
     own: dict[str, list[FrameNode]] = {}
-    for node in _nodes(groups, 0):
+    for node in _nodes({**groups, "node": plain}, 0):
         plane = in_plane[node.name]
         name = node.name.removeprefix(f"{plane}:")
         # Alone, too, its floors are rigid.

@@ -198,6 +198,14 @@ class Building(Frame):
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (type(self), self._given)
 
+    @classmethod
+    def grid(cls, *_: Any, **__: Any) -> Any:
+        """Refuse a grid in plan: its frames are drawn one by one."""
+        raise InputError(
+            "Building.grid: there is no grid in plan yet; draw each frame by Frame.grid, and give "
+            "Building the frames with angle, arm and along"
+        )
+
     def changed(self, **changes: Any) -> Building:
         """Return the building with other parameters in place of some of its own."""
         return type(self)(**self._given | changes)
