@@ -68,17 +68,22 @@ def _scales(length: str, force: str) -> dict[str, tuple[float, str]]:
     }
 
 
+def scales() -> dict[str, tuple[float, str]]:
+    """Return, of each unit of SI that has another one on paper, the factor and that unit."""
+    return _scales(*_CHOSEN.get())
+
+
 def paper(unit: str) -> tuple[float, str]:
     """Return the factor from a unit of SI to that on paper, and this one.
 
     What has none on paper stays as it is.
     """
-    return _scales(*_CHOSEN.get()).get(unit, (1.0, unit))
+    return scales().get(unit, (1.0, unit))
 
 
 def known(unit: str) -> bool:
     """Return whether a unit has another one on paper."""
-    return unit in _scales(*_CHOSEN.get())
+    return unit in scales()
 
 
 def factor(unit: str) -> float:

@@ -35,7 +35,7 @@ from rbsdem.output import frames, many, section
 from rbsdem.output.loops import history
 from rbsdem.output.style import style
 from rbsdem.output.tables import cells
-from rbsdem.output.units import paper
+from rbsdem.output.units import paper, scales
 from rbsdem.output.units import units as paper_units
 from rbsdem.run.analysis import modes
 from rbsdem.run.case import Case, case_of
@@ -388,7 +388,7 @@ def inputs(statement: _core.Statement) -> DataFrame:
     statement : Statement
         The groups.
     """
-    known, rows = _core.keys(), []
+    known, rows, on_paper = _core.keys(), [], scales()
     for group, given in _core.groups(statement):
         own = [*known["groups"].get(group, []), *known["section"].get(given.get("shape"), [])]
         own += known["rules"].get(given.get("rule"), {}).get("keys", [])
@@ -400,7 +400,7 @@ def inputs(statement: _core.Statement) -> DataFrame:
             # The sizes of a shape are lengths.
             unit = key.get("unit", "" if key or group != "section" else "m")
             unit = _OF_RULES[group == "flexure"].get(unit, unit)
-            scale, unit = (1.0, unit) if unit == "N/m" else paper(unit)
+            scale, unit = (1.0, unit) if unit == "N/m" else on_paper.get(unit, (1.0, unit))
             values = ", ".join(
                 each if isinstance(each, str) else f"{scale * each:.6g}"
                 for each in (value if isinstance(value, list) else [value])
