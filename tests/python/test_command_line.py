@@ -820,6 +820,8 @@ def test_stopped_run_keeps_its_rows_and_the_old_output(executable, long_run, tmp
     assert (tmp_path / "case.csv").read_text() == "# rbsdem old"
     kept = own if number == signal.SIGKILL else tmp_path / "case.csv.partial"
     text = kept.read_text()
+    if number == signal.SIGKILL:
+        text = text[: text.rfind("\n") + 1]  # the system may have been in the midst of a row
     assert text.endswith("\n")
     head, *rows = [line for line in text.splitlines() if not line.startswith("#")]
     assert {row.count(",") for row in rows} == {head.count(",")}

@@ -195,7 +195,7 @@ def test_column_does_not_change_with_the_lists_it_was_made_of():
 
 def test_analyses_leave_their_arrays_alone():
     time, force = TIME.copy(), 500 * MOTION
-    rbsdem.time_history(OPEN, time, force=force, ground_acceleration=force, method="newmark")
+    rbsdem.time_history(OPEN, time, force=force, ground_acceleration=force / 50, method="newmark")
     rbsdem.cyclic(COLUMN, displacement=force * 1e-6)
     rbsdem.cyclic(COLUMN, force=force)
     FLEXURE.response(force)

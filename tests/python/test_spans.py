@@ -106,7 +106,7 @@ def test_a_run_tells_of_another_m_over_v():
         BEAM, beam.length, load=25e3, rigid_end=beam.rigid_end,
         shear_spans=tuple((2 * hogs, sags) for hogs, sags in beam.shear_spans),
     )  # fmt: skip
-    built = replace(frame, beams=wrong, building=None)
+    built = replace(frame, beams=wrong, drawing=None)
     with pytest.warns(AccuracyWarning, match=r"member B-1-1: .* M/V is .* was found for") as told:
         push = rbsdem.pushover(built, drift=0.02)
     member = push.member("B-1-1")
