@@ -31,7 +31,7 @@ module rbs_base_band_matrix
 
    !> Pivots of the scaled matrix above this, in size, serve as well as exchanged ones. At 1e-4 a refined
    !> answer was good enough, but paths came to a standstill at corners twice as often.
-   real(wp), parameter :: least_pivot = 0.1_wp
+   real(wp), parameter :: least_pivot = 0.01_wp
 
    type :: band_matrix
       !> Number of unknowns, and of diagonals below the main one
