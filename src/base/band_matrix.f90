@@ -50,9 +50,10 @@ module rbs_base_band_matrix
       logical, private :: serves = .false.
       !> The band of a wide factor, as it was factored last, and D (size)
       real(wp), allocatable, private :: factored(:, :), diagonal(:)
-      !> One over root of the stiffness, and zeros (size + half-width); the matrix as elimination with pivots
+      !> Powers of two next to one over root of the stiffness, so that no digit depends on units, and zeros
+      !> (size + half-width); the stiffness scaled by them (size); the matrix as elimination with pivots
       !> takes it
-      real(wp), allocatable, private :: scale(:), general(:, :)
+      real(wp), allocatable, private :: scale(:), scaled_stiffness(:), general(:, :)
       integer, allocatable, private :: pivot(:)
       !> Whether that has been done since `factor`
       logical, private :: has_pivots = .false.
@@ -90,7 +91,8 @@ contains
                                     source=huge(1.0_wp))
       if (.not. present(stiffness)) return
       self%stiffness = stiffness
-      self%scale = [1.0_wp/sqrt(stiffness), (0.0_wp, i=2, rows)]
+      self%scale = [scale(1.0_wp, -shifta(exponent(stiffness), 1)), (0.0_wp, i=2, rows)]
+      self%scaled_stiffness = stiffness*self%scale(:unknowns)**2
    end subroutine create
 
    !> Hold an unknown that a support keeps still: it couples with nothing.
@@ -124,8 +126,10 @@ contains
       self%serves = self%positive
       if (.not. allocated(self%scale)) return
       ! The factor holds one over the pivots.
-      self%positive = self%positive .and. maxval(self%triangle(1, :)) < 1.0_wp/no_stiffness
-      self%serves = maxval(abs(self%triangle(1, :))) < 1.0_wp/least_pivot
+      associate (share => self%triangle(1, :)*self%scaled_stiffness)
+         self%positive = self%positive .and. maxval(share) < 1.0_wp/no_stiffness
+         self%serves = maxval(abs(share)) < 1.0_wp/least_pivot
+      end associate
    end subroutine factor
 
    pure subroutine scale_band(n, rows, scale, band)

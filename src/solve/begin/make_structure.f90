@@ -138,7 +138,7 @@ contains
          return
       end if
       call factor_stiffness()
-      if (matrix%positive .and. maxval(matrix%triangle(1, :)) < most_lost) return
+      if (matrix%positive .and. maxval(matrix%triangle(1, :)*matrix%band(1, :)) < most_lost) return
       ! With parts of like stiffness a mechanism differs from round-off.
       length = sum(frame%element(:frame%members)%length)/frame%members
       do i = 1, size(frame%element)
@@ -166,7 +166,7 @@ contains
          call report_stiffest()
          return
       end if
-      associate (free => maxloc(abs(matrix%triangle(1, :)), dim=1))
+      associate (free => maxloc(abs(matrix%triangle(1, :)*matrix%band(1, :)), dim=1))
          at = findloc(frame%number, free)
          ! The beams of a node behind a panel
          if (at(2) == 0) at = [3, frame%part(free)]
