@@ -382,15 +382,20 @@ contains
 
    end subroutine follow_gaps
 
-   !> Put a spring on the line that follows in a direction. A line without length, as layers have that unload
-   !> at once after they were loaded again, and one whose end is met at once are left too.
+   !> Put a spring on the line that follows in a direction. Lines without length, as layers have that unload
+   !> at once after they were loaded again, and those whose end is met at once are left too: a spring that has
+   !> turned at one place more than once has several, one in the other.
    subroutine leave(springs, i, side)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i, side
+      integer, parameter :: most_lines = 8
+      integer :: lines
 
-      call springs%leave(i, side)
-      if (springs%upper(i) - springs%lower(i) <= on_the_end*abs(springs%d(i)) .or. &
-          is_on_end(springs, i, springs%d(i), real(side, wp))) call springs%leave(i, side)
+      do lines = 1, most_lines
+         call springs%leave(i, side)
+         if (springs%upper(i) - springs%lower(i) > on_the_end*abs(springs%d(i)) .and. &
+             .not. is_on_end(springs, i, springs%d(i), real(side, wp))) exit
+      end do
    end subroutine leave
 
    !> Whether a spring is on an end that belongs to its line.
