@@ -29,8 +29,8 @@ module rbs_base_band_matrix
    !> Half-width of the elimination in registers.
    integer, parameter :: narrow = 3
 
-   !> Pivots of the scaled matrix above this, in size, serve as well as exchanged ones. At 1e-4 a refined
-   !> answer was good enough, but paths came to a standstill at corners twice as often.
+   !> Pivots of the scaled matrix above this, in size, serve as well as exchanged ones: they lose no more than
+   !> four digits, which a step of refinement recovers.
    real(wp), parameter :: least_pivot = 0.01_wp
 
    type :: band_matrix
