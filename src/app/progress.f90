@@ -25,9 +25,7 @@ module rbs_app_progress
       logical, private :: wanted = .false.
       real(wp), private :: begin = 0.0_wp, last = 0.0_wp
    contains
-      procedure :: start
-      procedure :: update
-      procedure :: finish
+      procedure :: start, update, finish
    end type terminal_progress
 
    interface

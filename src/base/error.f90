@@ -32,10 +32,7 @@ module rbs_base_error
       !> The messages, separated by `new_line`
       character(len=:), allocatable :: text
    contains
-      procedure :: add
-      procedure :: add_at
-      procedure :: join
-      procedure :: raise
+      procedure :: add, add_at, join, raise
    end type message_list
 
 contains

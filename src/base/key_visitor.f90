@@ -58,12 +58,7 @@ module rbs_base_key_visitor
       character(len=:), allocatable, private :: text
       type(message_list), private :: messages
    contains
-      procedure :: collect
-      procedure :: put
-      procedure :: take
-      procedure :: start_check
-      procedure :: end_check
-      procedure :: list
+      procedure :: collect, put, take, start_check, end_check, list
       procedure, private :: real_key, integer_key, logical_key, choice_key, text_key, long_text_key
       procedure, private :: real_list_key, integer_list_key
       !> `call visitor%parameters(keys, value)`, the parameters of a rule

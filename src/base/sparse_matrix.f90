@@ -12,8 +12,7 @@ module rbs_base_sparse_matrix
       integer, allocatable, private :: start(:), row(:)
       real(wp), allocatable, private :: value(:)
    contains
-      procedure :: subtract_product
-      procedure :: add_to
+      procedure :: subtract_product, add_to
    end type sparse_matrix
 
 contains

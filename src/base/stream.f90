@@ -22,15 +22,13 @@ module rbs_base_stream
       !> Place of the last number that was taken or given back
       integer :: at = 0
    contains
-      procedure :: save
-      procedure :: restore
+      procedure :: save, restore
       procedure, private :: item_real, item_reals, item_table, item_integer, item_long, item_logical
       procedure, private :: item_logicals
       !> `call stream%item(component)`
       generic :: item => item_real, item_reals, item_table, item_integer, item_long, item_logical, &
          item_logicals
-      procedure :: items
-      procedure :: item_count
+      procedure :: items, item_count
       procedure, private :: step
    end type stream_type
 

@@ -33,10 +33,7 @@ module rbs_base_units
    type :: unit_system
       type(unit_type) :: force = force_units(1), length = length_units(1), mass = mass_units(1)
    contains
-      procedure :: is_si
-      procedure :: into_si
-      procedure :: out_of_si
-      procedure :: name_of
+      procedure :: is_si, into_si, out_of_si, name_of
    end type unit_system
 
 contains

@@ -23,9 +23,7 @@ module rbs_bindings_exchange
       !> The answer that holds the structure of an analysis
       type(answer_type), pointer :: made => null()
    contains
-      procedure :: array
-      procedure :: whole
-      procedure :: wants
+      procedure :: array, whole, wants
    end type request_type
 
    type :: answer_type

@@ -36,10 +36,7 @@ module rbs_case_analysis_record
       !> Path of the state that the analysis begins in; not allocated: at rest
       character(len=:), allocatable :: initial
    contains
-      procedure :: visit => visit_analysis
-      procedure :: dynamic
-      procedure :: known
-      procedure :: validate => validate_analysis
+      procedure :: visit => visit_analysis, dynamic, known, validate => validate_analysis
    end type analysis_record
 
    !> The output of a run.

@@ -24,8 +24,7 @@ module rbs_case_case_record
    type, extends(visited_record) :: units_record
       character(len=8) :: force = 'N', length = 'm', mass = 'kg'
    contains
-      procedure :: visit => visit_units
-      procedure :: system
+      procedure :: visit => visit_units, system
    end type units_record
 
    !> The input of a run.
@@ -50,14 +49,7 @@ module rbs_case_case_record
       type(analysis_record) :: analysis
       type(output_record) :: output
    contains
-      procedure :: open_group
-      procedure :: visit
-      procedure :: visit_group
-      procedure :: settle
-      procedure :: validate
-      procedure :: check_static
-      procedure :: height
-      procedure :: is_drawn
+      procedure :: open_group, visit, visit_group, settle, validate, check_static, height, is_drawn
    end type case_record
 
 contains

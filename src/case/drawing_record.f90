@@ -92,11 +92,7 @@ module rbs_case_drawing_record
       logical :: stated = .false.
       integer :: hoops = 0
    contains
-      procedure :: open_group
-      procedure :: count_of
-      procedure :: visit => visit_drawing
-      procedure :: visit_group
-      procedure :: validate
+      procedure :: open_group, count_of, visit => visit_drawing, visit_group, validate
    end type drawing_record
 
 contains

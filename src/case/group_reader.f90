@@ -62,14 +62,8 @@ module rbs_case_group_reader
       !> Whether each group has been opened before
       logical, private :: seen(size(group_names)) = .false.
    contains
-      procedure :: open
-      procedure :: find
-      procedure :: put_numbers
-      procedure :: put_text
-      procedure :: finish
-      procedure, private :: is_spring
-      procedure, private :: collect_keys
-      procedure, private :: visit_open
+      procedure :: open, find, put_numbers, put_text, finish
+      procedure, private :: is_spring, collect_keys, visit_open
    end type group_reader
 
 contains

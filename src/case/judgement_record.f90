@@ -58,11 +58,7 @@ module rbs_case_judgement_record
       type(assess_record), allocatable :: assess(:)
       type(limit_record), allocatable :: limit(:)
    contains
-      procedure :: open_group
-      procedure :: count_of
-      procedure :: asked
-      procedure :: visit_group
-      procedure :: validate
+      procedure :: open_group, count_of, asked, visit_group, validate
    end type judgement_record
 
 contains

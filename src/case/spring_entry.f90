@@ -39,8 +39,7 @@ module rbs_case_spring_entry
       real(wp), allocatable :: y(:)
       integer, allocatable :: layer(:)
    contains
-      procedure :: visit
-      procedure :: set_rule
+      procedure :: visit, set_rule
    end type spring_entry
 
    type :: entry_list

@@ -28,13 +28,7 @@ module rbs_hysteresis_journal
       integer, allocatable :: direction(:), branches(:)
       real(wp), allocatable :: beyond(:), d_entered(:), work_entered(:)
    contains
-      procedure :: start
-      procedure :: keep
-      procedure :: leave_branch
-      procedure :: enter_branch
-      procedure :: passes_again
-      procedure :: give_back
-      procedure :: forget
+      procedure :: start, keep, leave_branch, enter_branch, passes_again, give_back, forget
    end type journal_type
 
 contains

@@ -29,8 +29,7 @@ module rbs_hysteresis_rule
       !> that `uses_flexural_work`
       real(wp) :: flexural_work = 0.0_wp
    contains
-      procedure :: copy
-      procedure :: serialize
+      procedure :: copy, serialize
    end type rule_memory
 
    !> The parameters of a spring, which do not change once they are prepared. `visit` presents their keys.
@@ -44,11 +43,7 @@ module rbs_hysteresis_rule
       class(rule_memory), allocatable :: memory
       type(segment) :: branch
    contains
-      procedure :: take
-      procedure :: check_relations
-      procedure :: prepare
-      procedure :: has_yielded
-      procedure :: start
+      procedure :: take, check_relations, prepare, has_yielded, start
       procedure(next_interface), deferred :: next
    end type rule_type
 

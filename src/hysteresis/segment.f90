@@ -25,10 +25,7 @@ module rbs_hysteresis_segment
       !> spring. +1: it leads upward, and lo moves; -1: downward, and hi moves; 0: it leads both ways.
       integer :: unload_on_reversal = 0
    contains
-      procedure :: force
-      procedure :: end_toward
-      procedure :: lead_outward
-      procedure :: serialize
+      procedure :: force, end_toward, lead_outward, serialize
    end type segment
 
 contains

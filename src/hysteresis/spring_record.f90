@@ -40,13 +40,7 @@ module rbs_hysteresis_spring_record
       integer :: places_line = 0
       real(wp), allocatable :: layer_value(:, :)
    contains
-      procedure :: set_layers
-      procedure :: layer
-      procedure :: validate
-      procedure :: make
-      procedure :: initial_stiffness
-      procedure :: same_as
-      procedure :: where_given
+      procedure :: set_layers, layer, validate, make, initial_stiffness, same_as, where_given
    end type spring_record
 
 contains

@@ -66,33 +66,10 @@ module rbs_hysteresis_springs
       !> Joints whose layers are springs
       type(layer_joints) :: joints
    contains
-      procedure :: create
-      procedure :: restart
-      procedure :: force
-      procedure :: forces
-      procedure :: find_forces
-      procedure :: find_resistance
-      procedure :: end_toward
-      procedure :: advance_to
-      procedure :: advance_on_branch
-      procedure :: leave
-      procedure :: arrive
-      procedure :: load_to
-      procedure :: line_of
-      procedure :: set_stiffness
-      procedure :: put
-      procedure :: release
-      procedure :: is_removed
-      procedure :: mark
-      procedure :: restore
-      procedure :: retry
-      procedure :: forget_mark
-      procedure :: serialize
-      procedure :: move_all
-      procedure :: carry_to
-      procedure :: stay_on_lines
-      procedure :: crushed_joint
-      procedure :: fit_planes
+      procedure :: create, restart, force, forces, find_forces, find_resistance, end_toward, advance_to
+      procedure :: advance_on_branch, leave, arrive, load_to, line_of, set_stiffness, put, release, is_removed
+      procedure :: mark, restore, retry, forget_mark, serialize, move_all, carry_to, stay_on_lines
+      procedure :: crushed_joint, fit_planes
    end type spring_array
 
 contains

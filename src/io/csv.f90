@@ -22,8 +22,7 @@ module rbs_io_csv
       character(len=4), allocatable, private :: si(:)
       character(len=:), allocatable, private :: buffer
    contains
-      procedure :: write_head
-      procedure :: record
+      procedure :: write_head, record
    end type csv_recorder
 
 contains

@@ -50,12 +50,8 @@ module rbs_io_output_file
       integer(int64), private :: flushed = 0_int64
       character(len=buffer_size), private :: buffer
    contains
-      procedure :: open => open_file
-      procedure :: put
-      procedure :: close => close_file
-      procedure :: get_partial_name
-      procedure, private :: flush => flush_buffer
-      procedure, private :: open_own
+      procedure :: open => open_file, put, close => close_file, get_partial_name
+      procedure, private :: flush => flush_buffer, open_own
    end type output_file
 
 contains

@@ -40,9 +40,7 @@ module rbs_io_text_file
       integer :: line = 0
       integer, private :: at = 1
    contains
-      procedure :: next_line
-      procedure :: position
-      procedure :: go_back
+      procedure :: next_line, position, go_back
    end type text_file
 
 contains

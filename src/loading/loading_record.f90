@@ -45,11 +45,7 @@ module rbs_loading_loading_record
       real(wp) :: period = unset
       real(wp), allocatable :: time(:), values(:)
    contains
-      procedure :: visit
-      procedure :: settle
-      procedure :: has_time
-      procedure :: validate
-      procedure :: inline_values
+      procedure :: visit, settle, has_time, validate, inline_values
    end type loading_record
 
 contains

@@ -16,11 +16,7 @@ module rbs_loading_loads
       !> Which of them act; found by `find_acting`
       logical :: acts(signals) = .false.
    contains
-      procedure :: find_acting
-      procedure :: set_begin
-      procedure :: at_time
-      procedure :: corner_after
-      procedure :: find_largest
+      procedure :: find_acting, set_begin, at_time, corner_after, find_largest
    end type loads_type
 
 contains

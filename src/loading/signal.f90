@@ -16,11 +16,7 @@ module rbs_loading_signal
       !> The line in that interval: value = start + slope (t - begin)
       real(wp), private :: begin = 1.0_wp, finish = -1.0_wp, start = 0.0_wp, slope = 0.0_wp
    contains
-      procedure :: at_time
-      procedure :: corner_after
-      procedure :: acts
-      procedure :: is_nonzero
-      procedure :: replace
+      procedure :: at_time, corner_after, acts, is_nonzero, replace
       procedure, private :: find
    end type signal_type
 

@@ -30,9 +30,7 @@ module rbs_output_channels
       type(row_contents) :: contents
       type(channel_type), allocatable, private :: channel(:)
    contains
-      procedure :: fill
-      procedure :: get_labels
-      procedure :: names
+      procedure :: fill, get_labels, names
    end type channel_list
 
 contains

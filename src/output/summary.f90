@@ -33,8 +33,7 @@ module rbs_output_summary
       !> storeys
       real(wp), allocatable :: storey_drift(:), peak_storey_drift(:)
    contains
-      procedure :: update_peak
-      procedure :: update_base_shear
+      procedure :: update_peak, update_base_shear
    end type peaks_type
 
    type, extends(peaks_type) :: summary_type
@@ -78,9 +77,7 @@ module rbs_output_summary
       !> times of the loading (in time)
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
-      procedure :: update_energies
-      procedure :: get_figures
-      procedure :: status
+      procedure :: update_energies, get_figures, status
    end type summary_type
 
    !> Forces closer than this share of them are the same peak.

@@ -39,9 +39,7 @@ module rbs_section_concrete_law
       !> a cover has spalled
       real(wp) :: fc = unset, ft = unset, ec = unset, eps0 = unset, eps_spall = 0.006_wp
    contains
-      procedure :: visit
-      procedure :: validate
-      procedure :: law
+      procedure :: visit, validate, law
    end type concrete_record
 
    type :: concrete_type

@@ -49,8 +49,7 @@ module rbs_section_events
       character(len=8) :: ultimate = 'cover'
       real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
    contains
-      procedure :: visit_points
-      procedure :: rule
+      procedure :: visit_points, rule
    end type points_record
 
    !> A moment-curvature diagram.

@@ -45,8 +45,7 @@ module rbs_section_section_record
       !> Number of the steel
       integer :: steel = unset_integer
    contains
-      procedure :: visit => visit_hoops
-      procedure :: name => name_of_hoops
+      procedure :: visit => visit_hoops, name => name_of_hoops
    end type hoops_record
 
    !> The end of a wall at y < 0, that at y > 0, or both.
@@ -84,8 +83,7 @@ module rbs_section_section_record
       !> Of a wall
       type(boundary_record), allocatable :: boundaries(:)
    contains
-      procedure :: visit => visit_section
-      procedure :: validate => validate_section
+      procedure :: visit => visit_section, validate => validate_section
    end type section_record
 
 contains

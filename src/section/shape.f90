@@ -47,14 +47,7 @@ module rbs_section_shape
       logical :: walled = .false.
       real(wp) :: end_width(2) = 0.0_wp, end_length(2) = 0.0_wp, end_inset(2) = 0.0_wp
    contains
-      procedure :: area_between
-      procedure :: moment_between
-      procedure :: area
-      procedure :: centroid
-      procedure :: second_moment
-      procedure :: shear_area
-      procedure :: leg_share
-      procedure :: shrink
+      procedure :: area_between, moment_between, area, centroid, second_moment, shear_area, leg_share, shrink
       procedure :: visit
    end type shape_type
 

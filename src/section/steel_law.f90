@@ -36,9 +36,7 @@ module rbs_section_steel_law
       real(wp) :: fy = unset, fu = unset, es = 200.0e9_wp
       real(wp) :: eps_sh = unset, eps_u = 0.1_wp
    contains
-      procedure :: visit
-      procedure :: validate
-      procedure :: law
+      procedure :: visit, validate, law
    end type steel_record
 
 contains

@@ -55,18 +55,13 @@ module rbs_solve_end_state
       integer :: method = 0
       real(wp) :: setting = 0.0_wp
    contains
-      procedure :: serialize => serialize_checkpoint
-      procedure :: put_under
+      procedure :: serialize => serialize_checkpoint, put_under
    end type checkpoint_type
 
    type :: end_state
       type(stream_type) :: stream
    contains
-      procedure :: is_given
-      procedure :: start_saving
-      procedure :: finish_saving
-      procedure :: restore
-      procedure :: check
+      procedure :: is_given, start_saving, finish_saving, restore, check
    end type end_state
 
 contains

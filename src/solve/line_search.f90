@@ -11,8 +11,7 @@ module rbs_solve_line_search
       !> The ends, and the function there
       real(wp) :: low = 0.0_wp, high = 1.0_wp, at_low = 0.0_wp, at_high = 0.0_wp
    contains
-      procedure :: next
-      procedure :: narrow
+      procedure :: next, narrow
    end type false_position
 
 contains

@@ -34,8 +34,7 @@ module rbs_solve_task
       !> Figures of the run, up to the last good state if it fails
       type(summary_type) :: summary
    contains
-      procedure :: resumes
-      procedure :: stops
+      procedure :: resumes, stops
    end type task_type
 
 contains

@@ -25,12 +25,7 @@ module rbs_structure_dynamic_stiffness
       !> K and K_G (half-width + 1, unknowns); the latter only where axial forces count
       real(wp), allocatable, private :: stiffness(:, :), geometric(:, :)
    contains
-      procedure :: create
-      procedure :: factor
-      procedure :: solve
-      procedure :: motion
-      procedure :: stiffness_of
-      procedure :: sum_of_squares
+      procedure :: create, factor, solve, motion, stiffness_of, sum_of_squares
       procedure, non_overridable :: mass_product
       procedure, non_overridable :: critical_multiple
    end type dynamic_stiffness

@@ -145,44 +145,18 @@ module rbs_structure_structure
       procedure(list_channels), deferred :: channels
       procedure(fill_values), deferred :: fill_row
       ! Defaults for small rotations
-      procedure :: accelerations => accelerate_unknowns
-      procedure :: speed
-      procedure :: power_of_loads => power_of_patterns
-      procedure :: kinetic_energy
-      procedure :: largest_rotation
-      procedure :: storey_drifts
-      procedure :: largest_drift
-      procedure :: top_displacement
-      procedure :: top_acceleration
-      procedure :: axial_force
-      procedure :: acceleration_scale
-      procedure :: check_initial
-      procedure :: check_inertia
+      procedure :: accelerations => accelerate_unknowns, speed, power_of_loads => power_of_patterns
+      procedure :: kinetic_energy, largest_rotation, storey_drifts, largest_drift, top_displacement
+      procedure :: top_acceleration, axial_force, acceleration_scale, check_initial, check_inertia
       ! Small motions on the initial stiffness
-      procedure :: dynamic_parts
-      procedure :: critical_factor
-      procedure :: momenta
+      procedure :: dynamic_parts, critical_factor, momenta
       !> Put the structure under a constant axial load at its top
       procedure :: put_under
       ! Members that fail during a run
-      procedure :: next_failed_member
-      procedure :: remove_member
-      procedure :: has_collapsed
-      procedure :: unbounded_spring
+      procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
       ! Where deformations follow from the unknowns and the present stiffness of the springs
-      procedure :: linearise
-      procedure :: damp
-      procedure :: add_damping
-      procedure :: size_of_parts
-      procedure :: clear_round_off
-      procedure :: is_in_series
-      procedure :: set_shape
-      procedure :: work_of_dead_load
-      procedure :: spring_of
-      procedure :: create_springs
-      procedure :: add_ground
-      procedure :: base_force
-      procedure :: work_of
+      procedure :: linearise, damp, add_damping, size_of_parts, clear_round_off, is_in_series, set_shape
+      procedure :: work_of_dead_load, spring_of, create_springs, add_ground, base_force, work_of
    end type structure_type
 
    !> Accelerations, forces and powers of the equation of motion at one state. `create` allocates it once,

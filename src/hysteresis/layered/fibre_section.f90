@@ -113,25 +113,9 @@ module rbs_hysteresis_layered_fibre_section
       integer, private :: number_kept = 0
       logical, private :: marked = .false.
    contains
-      procedure :: start
-      procedure :: sum_up
-      procedure :: deformation
-      procedure :: leave
-      procedure :: must_leave
-      procedure :: go_on
-      procedure :: end_tolerance
-      procedure :: least_rate
-      procedure :: move_to
-      procedure :: put
-      procedure :: opening_at
-      procedure :: read_plane
-      procedure :: motion_of_layers
-      procedure :: mark
-      procedure :: restore
-      procedure :: forget
-      procedure :: save_layer
-      procedure :: restore_layer
-      procedure :: serialize
+      procedure :: start, sum_up, deformation, leave, must_leave, go_on, end_tolerance, least_rate, move_to
+      procedure :: put, opening_at, read_plane, motion_of_layers, mark, restore, forget, save_layer
+      procedure :: restore_layer, serialize
    end type fibre_section
 
 contains

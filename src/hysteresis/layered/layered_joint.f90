@@ -29,10 +29,7 @@ module rbs_hysteresis_layered_layered_joint
       type(rule_slot), allocatable :: rule(:)
       integer, allocatable :: rule_of(:)
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: start
-      procedure :: next
+      procedure :: visit, prepare, start, next
    end type layered_rule
 
 contains

@@ -46,11 +46,7 @@ module rbs_hysteresis_rules_backbone
       !> `unset`: none
       real(wp) :: f_res = unset, d_u = unset
    contains
-      procedure :: visit
-      procedure :: completed
-      procedure :: carries
-      procedure :: check
-      procedure :: stiffness
+      procedure :: visit, completed, carries, check, stiffness
    end type backbone_parameters
 
    type :: backbone_side
@@ -62,13 +58,7 @@ module rbs_hysteresis_rules_backbone
       !> Present yield deformation [m or rad]
       real(wp) :: d_y = 0.0_wp
    contains
-      procedure :: draw
-      procedure :: force
-      procedure :: line_from
-      procedure :: meeting
-      procedure :: add_corner
-      procedure :: end_at_rupture
-      procedure :: serialize
+      procedure :: draw, force, line_from, meeting, add_corner, end_at_rupture, serialize
    end type backbone_side
 
 contains

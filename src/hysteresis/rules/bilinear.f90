@@ -22,10 +22,7 @@ module rbs_hysteresis_rules_bilinear
       !> Stiffness after yield [N/m or N m/rad]
       real(wp) :: k_post = unset
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: check_relations
-      procedure :: next
+      procedure :: visit, prepare, check_relations, next
    end type bilinear_rule
 
 contains

@@ -97,8 +97,7 @@ module rbs_hysteresis_rules_capped_lines
       !> Of each side, the turns whose loops are still open
       type(open_turns) :: open(-1:1)
    contains
-      procedure :: copy
-      procedure :: serialize
+      procedure :: copy, serialize
    end type capped_memory
 
    !> A spring at an event: its part, and the state that the event changes.

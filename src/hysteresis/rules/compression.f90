@@ -16,9 +16,7 @@ module rbs_hysteresis_rules_compression
       !> Stiffness of the closed joint [N/m]; closing at which it begins to carry [m]
       real(wp) :: k = unset, gap = 0.0_wp
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: next
+      procedure :: visit, prepare, next
    end type compression_rule
 
 contains

@@ -54,8 +54,7 @@ module rbs_hysteresis_rules_concrete
    type, extends(rule_memory) :: concrete_memory
       type(concrete_state) :: now
    contains
-      procedure :: copy
-      procedure :: serialize
+      procedure :: copy, serialize
    end type concrete_memory
 
    type, extends(rule_type) :: concrete_rule
@@ -74,10 +73,7 @@ module rbs_hysteresis_rules_concrete
       !> Whether opening and closing have paths of their own
       logical, private :: rubs = .false.
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: check_relations
-      procedure :: next
+      procedure :: visit, prepare, check_relations, next
    end type concrete_rule
 
    !> A spring at an event: its rule, and the state that the event changes.

@@ -23,9 +23,7 @@ module rbs_hysteresis_rules_deterioration
       !> Of the strength: 0 as above, to nothing; 1: exponential; 2: a hyperbola
       real(wp) :: fade = 0.0_wp
    contains
-      procedure :: left
-      procedure :: strength_left
-      procedure :: acts
+      procedure :: left, strength_left, acts
    end type deterioration_type
 
 contains

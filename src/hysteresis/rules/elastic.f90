@@ -15,9 +15,7 @@ module rbs_hysteresis_rules_elastic
       !> Stiffness [N/m or N m/rad]
       real(wp) :: k = unset
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: next
+      procedure :: visit, prepare, next
    end type elastic_rule
 
 contains

@@ -42,8 +42,7 @@ module rbs_hysteresis_rules_open_turns
       !> Deformation of the other side, as seen from there, behind which this turn fades [m or rad]
       real(wp) :: fades_from = unbounded
    contains
-      procedure :: shift
-      procedure :: serialize => serialize_turn
+      procedure :: shift, serialize => serialize_turn
    end type turn
 
    type :: open_turns
@@ -51,14 +50,7 @@ module rbs_hysteresis_rules_open_turns
       integer :: count = 0
       type(turn), allocatable :: list(:)
    contains
-      procedure :: push
-      procedure :: newest_of_side
-      procedure :: place_of
-      procedure :: forget_inside
-      procedure :: let_fade
-      procedure :: fade
-      procedure :: move_with_peak
-      procedure :: copy
+      procedure :: push, newest_of_side, place_of, forget_inside, let_fade, fade, move_with_peak, copy
       procedure :: serialize => serialize_turns
    end type open_turns
 

@@ -34,12 +34,7 @@ module rbs_hysteresis_rules_peak_oriented
       !> work of the flexural spring that halves the strength that can decay, over f_y d_y; 0: none
       real(wp) :: lambda(4) = 0.0_wp, lambda_h = 0.0_wp
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: check_relations
-      procedure :: has_yielded
-      procedure :: start
-      procedure :: next
+      procedure :: visit, prepare, check_relations, has_yielded, start, next
    end type peak_oriented_rule
 
    type, extends(rule_memory) :: peak_oriented_memory
@@ -48,8 +43,7 @@ module rbs_hysteresis_rules_peak_oriented
       type(capped_memory) :: part(2)
       type(segment) :: branch(2)
    contains
-      procedure :: copy
-      procedure :: serialize
+      procedure :: copy, serialize
    end type peak_oriented_memory
 
 contains

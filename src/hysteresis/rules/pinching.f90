@@ -21,8 +21,7 @@ module rbs_hysteresis_rules_pinching
    type, extends(peak_oriented_rule) :: pinching_rule
       real(wp) :: kappa_f = unset, kappa_d = unset
    contains
-      procedure :: visit
-      procedure :: prepare
+      procedure :: visit, prepare
    end type pinching_rule
 
 contains

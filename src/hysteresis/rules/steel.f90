@@ -59,8 +59,7 @@ module rbs_hysteresis_rules_steel
    type, extends(rule_memory) :: steel_memory
       type(steel_state) :: now
    contains
-      procedure :: copy
-      procedure :: serialize
+      procedure :: copy, serialize
    end type steel_memory
 
    type, extends(rule_type) :: steel_rule
@@ -83,10 +82,7 @@ module rbs_hysteresis_rules_steel
       !> Stiffness of the elements [N/m]
       real(wp), private :: k_element(elements) = 0.0_wp
    contains
-      procedure :: visit
-      procedure :: check_relations
-      procedure :: prepare
-      procedure :: next
+      procedure :: visit, check_relations, prepare, next
    end type steel_rule
 
 contains

@@ -58,8 +58,7 @@ module rbs_hysteresis_rules_takeda
       !> Inner peaks whose loops are still open, with the reloading branches that were left there
       type(open_turns) :: open
    contains
-      procedure :: copy
-      procedure :: serialize
+      procedure :: copy, serialize
    end type takeda_memory
 
    type, extends(rule_type) :: takeda_rule
@@ -72,10 +71,7 @@ module rbs_hysteresis_rules_takeda
       !> Cracking and yield force [N or N m]
       real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp
    contains
-      procedure :: visit
-      procedure :: prepare
-      procedure :: check_relations
-      procedure :: next
+      procedure :: visit, prepare, check_relations, next
    end type takeda_rule
 
    !> A spring at an event: its rule, and the state that the event changes.

@@ -47,9 +47,7 @@ module rbs_solve_modal_modes
       !> Unknowns of a shape, and of one found before (unknowns)
       real(wp), allocatable, private :: x(:), other(:)
    contains
-      procedure :: start
-      procedure :: find
-      procedure :: frequency
+      procedure :: start, find, frequency
    end type mode_search
 
    !> The stability region of RK4 ends here on the negative real axis: z = -2.785293563...

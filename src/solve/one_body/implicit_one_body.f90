@@ -75,11 +75,7 @@ module rbs_solve_one_body_implicit_one_body
       !> Whether a rule cycles through lines
       logical, private :: stuck = .false.
    contains
-      procedure :: set_step
-      procedure :: take_step
-      procedure :: fit_to
-      procedure :: solve
-      procedure :: work_of_damping
+      procedure :: set_step, take_step, fit_to, solve, work_of_damping
    end type one_body_step
 
 contains

@@ -22,8 +22,7 @@ module rbs_solve_one_body_rk4_one_body
       real(wp), private :: g(4) = 0.0_wp, d(4) = 0.0_wp, c(3) = 0.0_wp, h = -1.0_wp
       integer, private :: version = -1
    contains
-      procedure :: create
-      procedure :: take_step
+      procedure :: create, take_step
    end type rk4_body
 
 contains

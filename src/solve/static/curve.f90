@@ -43,12 +43,7 @@ module rbs_solve_static_curve
       !> Round-off of the deformations of layers [m]
       real(wp), private :: digits = 0.0_wp
    contains
-      procedure :: set
-      procedure :: is_gentle
-      procedure :: work
-      procedure :: least_rate
-      procedure :: hides_event
-      procedure :: guess
+      procedure :: set, is_gentle, work, least_rate, hides_event, guess
    end type curve_type
 
 contains

@@ -49,12 +49,7 @@ module rbs_solve_static_curved
       !> Strides in a row that made no progress
       integer :: stalled_strides = 0
    contains
-      procedure :: advance
-      procedure :: solve_line
-      procedure :: find_balance
-      procedure :: unbalance
-      procedure :: reset_reference
-      procedure :: serialize
+      procedure :: advance, solve_line, find_balance, unbalance, reset_reference, serialize
    end type curved_path
 
 contains

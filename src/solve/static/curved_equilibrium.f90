@@ -78,11 +78,7 @@ module rbs_solve_static_curved_equilibrium
       real(wp), allocatable, private :: residual(:), arm(:), pushed(:), lift(:), right(:, :), &
                                         change(:, :), f(:)
    contains
-      procedure :: create
-      procedure :: solve
-      procedure :: size_of
-      procedure :: remember
-      procedure :: unbalance
+      procedure :: create, solve, size_of, remember, unbalance
    end type curved_equilibrium
 
 contains

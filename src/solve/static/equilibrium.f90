@@ -85,10 +85,7 @@ module rbs_solve_static_equilibrium
       !> elements to equilibrium, and those by the load per unit (coordinates, or none)
       real(wp), allocatable, private :: f(:), flexible(:), inner(:), inner_load(:), inner_more(:), more(:)
    contains
-      procedure :: create
-      procedure :: follow
-      procedure :: find_unbalance
-      procedure :: serialize
+      procedure :: create, follow, find_unbalance, serialize
    end type equilibrium_type
 
 contains

@@ -48,11 +48,7 @@ module rbs_solve_static_straight
       logical :: in_loop = .false.
       real(wp) :: loop_control = 0.0_wp, loop_force = 0.0_wp, loop_work = 0.0_wp, loop_motion = 0.0_wp
    contains
-      procedure :: advance
-      procedure :: solve_line
-      procedure :: find_balance
-      procedure :: unbalance
-      procedure :: serialize
+      procedure :: advance, solve_line, find_balance, unbalance, serialize
    end type straight_path
 
 contains

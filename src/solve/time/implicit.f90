@@ -46,17 +46,8 @@ module rbs_solve_time_implicit
       real(wp), allocatable, private :: anchor(:)
       integer, allocatable, private :: returns(:)
    contains
-      procedure :: prepare
-      procedure :: take_step
-      procedure :: correct
-      procedure :: try
-      procedure :: work_of_residual
-      procedure :: is_round_off
-      procedure :: serialize
-      procedure, private :: try_start
-      procedure, private :: check_runaway
-      procedure, private :: find_works
-      procedure, private :: resist
+      procedure :: prepare, take_step, correct, try, work_of_residual, is_round_off, serialize
+      procedure, private :: try_start, check_runaway, find_works, resist
    end type implicit_stepper
 
    interface

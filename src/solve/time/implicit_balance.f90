@@ -67,13 +67,9 @@ module rbs_solve_time_implicit_balance
       !> (coordinates)
       real(wp), allocatable, private :: unit_factor(:), spring_factor(:), stiff(:)
    contains
-      procedure :: start
-      procedure :: find_residual
-      procedure :: find_first
-      procedure, private :: fit_elements
-      procedure, private :: measure
-      procedure :: is_round_off
-      procedure :: go_on
+      procedure :: start, find_residual, find_first
+      procedure, private :: fit_elements, measure
+      procedure :: is_round_off, go_on
       procedure, private :: set_damping
       procedure :: serialize
    end type step_balance
@@ -98,9 +94,7 @@ module rbs_solve_time_implicit_balance
       !> Whether an unknown without mass is held, as its pivot is round-off
       logical :: holds = .false.
    contains
-      procedure :: create
-      procedure :: find_correction
-      procedure :: fit
+      procedure :: create, find_correction, fit
    end type step_tangent
 
 contains

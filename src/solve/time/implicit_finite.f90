@@ -72,13 +72,7 @@ module rbs_solve_time_implicit_finite
       !> Work of the springs up to the step (unknowns)
       real(wp), allocatable, private :: work(:)
    contains
-      procedure :: prepare
-      procedure :: take_step
-      procedure :: correct
-      procedure :: try
-      procedure :: work_of_residual
-      procedure :: is_round_off
-      procedure :: serialize
+      procedure :: prepare, take_step, correct, try, work_of_residual, is_round_off, serialize
    end type finite_stepper
 
 contains

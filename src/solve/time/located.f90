@@ -35,8 +35,7 @@ module rbs_solve_time_located
       !> Deformations that are zero (springs)
       real(wp), allocatable, private :: at_rest(:)
    contains
-      procedure :: advance
-      procedure :: resume
+      procedure :: advance, resume
    end type located_stepper
 
 contains

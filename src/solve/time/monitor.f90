@@ -52,11 +52,7 @@ module rbs_solve_time_monitor
       logical :: monitors_top = .false.
       type(motion_result), private :: now
    contains
-      procedure :: watch_for
-      procedure :: begin
-      procedure :: update
-      procedure :: update_within_step
-      procedure :: check_limits
+      procedure :: watch_for, begin, update, update_within_step, check_limits
    end type response_monitor
 
 contains

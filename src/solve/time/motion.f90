@@ -40,12 +40,7 @@ module rbs_solve_time_motion
       !> damping is none
       logical :: plain = .false.
    contains
-      procedure :: create
-      procedure :: acceleration
-      procedure :: forces_on_bodies
-      procedure :: joint_forces
-      procedure :: set_axial_loads
-      procedure :: damping_power
+      procedure :: create, acceleration, forces_on_bodies, joint_forces, set_axial_loads, damping_power
       procedure :: base_shear
    end type equation_of_motion
 

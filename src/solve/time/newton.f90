@@ -46,11 +46,7 @@ module rbs_solve_time_newton
       !> Tries of the present step that have failed
       integer, private :: failed = 0
    contains
-      procedure :: advance
-      procedure :: resume
-      procedure :: iterate
-      procedure :: has_converged
-      procedure :: move_springs
+      procedure :: advance, resume, iterate, has_converged, move_springs
       !> Once, before the first step
       procedure(act_on_state), deferred :: prepare
       !> Take the step, if it converges; else the state is as before

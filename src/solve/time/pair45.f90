@@ -37,8 +37,7 @@ module rbs_solve_time_pair45
       !> Power of loads and damping at the start of the step [W]
       real(wp), private :: load_power = 0.0_wp, damping_power = 0.0_wp
    contains
-      procedure :: create
-      procedure :: attempt
+      procedure :: create, attempt
    end type pair45_scheme
 
 contains

@@ -43,8 +43,7 @@ module rbs_solve_time_plan
       integer :: offset = 0
       integer, allocatable :: parts(:)
    contains
-      procedure :: rows
-      procedure :: go_on_from
+      procedure :: rows, go_on_from
    end type time_plan
 
 contains

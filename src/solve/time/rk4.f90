@@ -25,8 +25,7 @@ module rbs_solve_time_rk4
       !> The column, if it has one body
       type(rk4_body) :: body
    contains
-      procedure :: create
-      procedure :: attempt
+      procedure :: create, attempt
    end type rk4_scheme
 
    !> Springs change their lines at the end of a step.

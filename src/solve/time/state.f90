@@ -38,8 +38,7 @@ module rbs_solve_time_state
       !> Peaks and limit states so far
       type(response_monitor) :: monitor
    contains
-      procedure :: begin_monitor
-      procedure :: update_monitor
+      procedure :: begin_monitor, update_monitor
    end type state_type
 
    !> A method of integration. Its own type holds its memory from step to step.
@@ -57,8 +56,7 @@ module rbs_solve_time_state
       real(wp) :: setting = 0.0_wp
    contains
       procedure(advance_interface), deferred :: advance
-      procedure :: restart
-      procedure :: resume
+      procedure :: restart, resume
    end type stepper_type
 
    abstract interface

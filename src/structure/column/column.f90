@@ -92,32 +92,11 @@ module rbs_structure_column_column
       !> Number of the spring of a kind in a joint, from the bottom up (3, n); 0: there is none
       integer, allocatable :: at(:, :)
    contains
-      procedure :: spring_rates
-      procedure :: unknown_rates
-      procedure :: forces
-      procedure :: axial_forces
-      procedure :: axial_force
-      procedure :: add_stiffness
-      procedure :: add_geometric
-      procedure :: accelerations
-      procedure :: power_of_loads
-      procedure :: potential_energy
-      procedure :: top_height
-      procedure :: rotations
-      procedure :: angular_momentum
-      procedure :: acceleration_scale
-      procedure :: check_loads
-      procedure :: check_initial
-      procedure :: check_inertia
-      procedure :: dynamic_parts
-      procedure :: set_shape
-      procedure :: is_in_series
-      procedure :: clear_round_off
-      procedure :: momenta
-      procedure :: channels
-      procedure :: fill_row
-      procedure :: put_under
-      procedure :: largest_rotation
+      procedure :: spring_rates, unknown_rates, forces, axial_forces, axial_force, add_stiffness
+      procedure :: add_geometric, accelerations, power_of_loads, potential_energy, top_height, rotations
+      procedure :: angular_momentum, acceleration_scale, check_loads, check_initial, check_inertia
+      procedure :: dynamic_parts, set_shape, is_in_series, clear_round_off, momenta, channels, fill_row
+      procedure :: put_under, largest_rotation
    end type column_type
 
 contains

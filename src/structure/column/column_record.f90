@@ -80,10 +80,7 @@ module rbs_structure_column_column_record
       !> each. Axial ones are tension positive, without them joints do not open
       type(spring_record), allocatable :: shear(:), flexure(:), axial_spring(:)
    contains
-      procedure :: visit
-      procedure :: validate
-      procedure :: joints
-      procedure :: joint_number
+      procedure :: visit, validate, joints, joint_number
    end type column_record
 
 contains

@@ -35,17 +35,8 @@ module rbs_structure_column_finite
 
    type, extends(column_type) :: finite_chain_type
    contains
-      procedure :: accelerations
-      procedure :: accelerate
-      procedure :: find_top_force
-      procedure :: body_velocities
-      procedure :: speed
-      procedure :: power_of_loads
-      procedure :: kinetic_energy
-      procedure :: potential_energy
-      procedure :: angular_momentum
-      procedure :: top_displacement
-      procedure :: top_height
+      procedure :: accelerations, accelerate, find_top_force, body_velocities, speed, power_of_loads
+      procedure :: kinetic_energy, potential_energy, angular_momentum, top_displacement, top_height
       procedure :: top_acceleration
    end type finite_chain_type
 

@@ -34,11 +34,7 @@ module rbs_structure_column_sturm
       !> Pivots, T and C of the joints at the last shift (7, n)
       real(wp), allocatable :: joint(:, :)
    contains
-      procedure :: factor
-      procedure :: solve
-      procedure :: motion
-      procedure :: stiffness_of
-      procedure :: sum_of_squares
+      procedure :: factor, solve, motion, stiffness_of, sum_of_squares
    end type sturm_chain
 
 contains

@@ -96,15 +96,8 @@ module rbs_structure_frame_element
       logical :: pinned = .false., after_dead_load = .false.
       real(wp) :: built_at(3) = 0.0_wp
    contains
-      procedure :: follow_floor
-      procedure :: leave_out_supports
-      procedure :: disconnect
-      procedure :: set_initial
-      procedure :: condensed
-      procedure :: inner_springs
-      procedure :: bend_as_springs
-      procedure :: set_rest
-      procedure :: buckles
+      procedure :: follow_floor, leave_out_supports, disconnect, set_initial, condensed, inner_springs
+      procedure :: bend_as_springs, set_rest, buckles
    end type frame_element
 
 contains

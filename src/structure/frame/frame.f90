@@ -97,43 +97,12 @@ module rbs_structure_frame_frame
       !> stiffness; not allocated where there is none
       type(sparse_matrix), allocatable :: second_order, damping
    contains
-      procedure :: along_x
-      procedure :: add_along_x
-      procedure :: plane_drift
-      procedure :: linearise
-      procedure :: damp
-      procedure :: add_damping
-      procedure :: work_of_dead_load
-      procedure :: is_loaded
-      procedure :: take_load_off
-      procedure :: leave_out_later
-      procedure :: build_later
-      procedure :: set_compression
-      procedure :: compress
-      procedure :: set_second_order
-      procedure :: set_damping
-      procedure :: clear_round_off
-      procedure :: size_of_parts
-      procedure :: member_forces
-      procedure :: spring_rates
-      procedure :: unknown_rates
-      procedure :: forces
-      procedure :: axial_forces
-      procedure :: add_stiffness
-      procedure :: add_geometric
-      procedure :: rotations
-      procedure :: storey_drifts
-      procedure :: potential_energy
-      procedure :: channels
-      procedure :: fill_row
-      procedure :: base_force
-      procedure :: set_shape
-      procedure :: check_loads
-      procedure :: is_removed
-      procedure :: next_failed_member
-      procedure :: remove_member
-      procedure :: has_collapsed
-      procedure :: unbounded_spring
+      procedure :: along_x, add_along_x, plane_drift, linearise, damp, add_damping, work_of_dead_load
+      procedure :: is_loaded, take_load_off, leave_out_later, build_later, set_compression, compress
+      procedure :: set_second_order, set_damping, clear_round_off, size_of_parts, member_forces, spring_rates
+      procedure :: unknown_rates, forces, axial_forces, add_stiffness, add_geometric, rotations, storey_drifts
+      procedure :: potential_energy, channels, fill_row, base_force, set_shape, check_loads, is_removed
+      procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
    end type frame_type
 
    interface

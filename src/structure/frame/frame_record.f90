@@ -86,8 +86,7 @@ module rbs_structure_frame_frame_record
       !> In all nodes, or at the two ends where these are given
       real(wp) :: rigid_end = 0.0_wp, rigid_from = unset, rigid_to = unset
    contains
-      procedure :: visit => visit_cell
-      procedure :: fits
+      procedure :: visit => visit_cell, fits
    end type cell_record
 
    !> A node, or additions to a node of the grid.
@@ -158,11 +157,7 @@ module rbs_structure_frame_frame_record
       type(loss_record), allocatable :: loss(:)
       type(frame_spring), allocatable :: spring(:)
    contains
-      procedure :: open_group
-      procedure :: visit => visit_frame
-      procedure :: visit_group
-      procedure :: count_of
-      procedure :: total_height
+      procedure :: open_group, visit => visit_frame, visit_group, count_of, total_height
    end type frame_record
 
 contains

@@ -28,13 +28,7 @@ module rbs_structure_frame_plan
       !> Numbers of U, V and Theta of the floors among the unknowns, 0 where they are held (3, floors)
       integer, allocatable :: number(:, :)
    contains
-      procedure :: is_given
-      procedure :: planes
-      procedure :: hold_free
-      procedure :: motion
-      procedure :: on_floors
-      procedure :: turning_mass
-      procedure :: turning_momentum
+      procedure :: is_given, planes, hold_free, motion, on_floors, turning_mass, turning_momentum
    end type floor_plan
 
 contains
