@@ -76,9 +76,10 @@ class Statement(NamedTuple):
         return Statement(f"{self.text}\n{other.text}", self.numbers + other.numbers)
 
 
-def joined(parts: Iterable[Statement]) -> Statement:
-    """Return the groups of all parts."""
-    filled = [part for part in parts if part.text]
+def joined(parts: Iterable[Statement | tuple[str, Mapping[str, Any]]]) -> Statement:
+    """Return the groups of all parts: statements, and names of groups with their values."""
+    made = [part if isinstance(part, Statement) else group(*part) for part in parts]
+    filled = [part for part in made if part.text]
     numbers = [number for part in filled for number in part.numbers]
     return Statement("\n".join([part.text for part in filled]), numbers)
 

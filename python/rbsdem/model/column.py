@@ -14,7 +14,7 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import ArrayLike, Self
 from rbsdem.errors import InputError, warn
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Gauge, Layered, Spring, checked_spring, layer_springs, whole_column
+from rbsdem.model.springs import Gauge, Spring, checked_spring, placed, whole_column
 
 
 @dataclass(frozen=True)
@@ -549,14 +549,12 @@ class Column:
         values["model"] = _core.Text(self.model)
         own = {k: v for k, v in values.items() if v is not False and v != usual.get(k)}
         own |= self.footing.keys() if self.footing is not None else {}
-        parts = [_core.group("column", own)]
-        if isinstance(self.damping, Damping):
-            parts.append(self.damping.statement())
-        ids: dict[Spring, int] = {}
-        for name in ("shear", "flexure", "axial_spring"):
+        damping = [self.damping.statement()] if isinstance(self.damping, Damping) else []
+        springs: list[tuple[str, dict[str, Any], Spring]] = []
+        for name in SPRING_GROUPS:
             beneath = None if self.footing is None else getattr(self.footing, name)
-            parts += _springs_statement(getattr(self, name), beneath, name, ids)
-        return _core.joined([*parts, layer_springs(ids)])
+            springs += _stated_springs(getattr(self, name), beneath, name)
+        return _core.joined([("column", own), *damping, *placed(springs)])
 
 
 #: Fields of a column that are neither springs nor records.
@@ -585,27 +583,21 @@ def _doubled(parts: list[float]) -> list[float]:
     return [*parts[:-1], 2 * parts[-1], *parts[-2::-1]]
 
 
-def _springs_statement(
-    springs: Spring | Sequence[Spring] | None,
-    beneath: Spring | None,
-    name: str,
-    ids: dict[Spring, int],
-) -> Iterator[_core.Statement]:
-    """Yield the springs of one kind, equal springs once, with the joints that have them."""
-    stated: list[tuple[Spring, dict[str, Any]]] = []
+def _stated_springs(
+    springs: Spring | Sequence[Spring] | None, beneath: Spring | None, name: str
+) -> list[tuple[str, dict[str, Any], Spring]]:
+    """Return the springs of one kind, equal springs once, with the joints that have them."""
+    stated: list[tuple[str, dict[str, Any], Spring]] = []
     if beneath is not None:
-        stated.append((beneath, {"joint": [0]}))
+        stated.append((name, {"joint": [0]}, beneath))
     if isinstance(springs, Spring):
-        stated.append((springs, {}))
+        stated.append((name, {}, springs))
     elif springs is not None:
         joints: dict[Spring, list[int]] = {}
         for number, spring in enumerate(springs, 1):
             joints.setdefault(spring, []).append(number)
-        stated += [(spring, {"joint": numbers}) for spring, numbers in joints.items()]
-    for spring, place in stated:
-        yield spring.statement(name, **place)
-        if isinstance(spring, Layered):
-            yield spring.layers_statement(ids, **place)
+        stated += [(name, {"joint": numbers}, spring) for spring, numbers in joints.items()]
+    return stated
 
 
 def _parts(values: ArrayLike, name: str) -> tuple[float, ...]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,10 +16,7 @@ from rbsdem import _arguments, _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Gauge, Layered, Spring
-
-if TYPE_CHECKING:
-    pass
+from rbsdem.model.springs import Gauge, Group, Spring, placed
 
 _PLACES = ("shear", "flexure", "axial_spring")
 #: Words for lines and bays.
@@ -156,11 +153,10 @@ class FrameMember:
     def _springs(self, group: str) -> tuple[tuple[float, Spring], ...]:
         return getattr(self, group) or ()
 
-    def _groups(self, name: str, layers: dict[Spring, int]) -> Iterator[_core.Statement]:
-        """Yield the groups of a case file, under a name; new springs of layers are added."""
-        yield _core.group(
-            "member_kind",
-            {
+    def _groups(self, name: str) -> list[Any]:
+        """Return the groups of a case file under a name, and the springs that stand in some."""
+        found: list[Any] = [
+            ("member_kind", {
                 "name": _core.Text(name),
                 **self._elastic(),
                 "shear_rigidity": self.shear_rigidity or None,
@@ -173,18 +169,17 @@ class FrameMember:
                 "interior": None if self.interior == "elastic" else self.interior,
                 "ends": None if self.ends == "continuous" else self.ends,
                 "after_dead_load": self.after_dead_load or None,
-            },
-        )
+            })
+        ]  # fmt: skip
         for group in ("flexure", "shear"):
             positions: dict[Spring, list[float]] = {}
             for position, spring in self._springs(group):
                 positions.setdefault(spring, []).append(position)
             for spring, where in positions.items():
-                yield spring.statement(group, kind=_core.Text(name), position=where)
-                if isinstance(spring, Layered):
-                    yield spring.layers_statement(layers, kind=_core.Text(name), position=where)
+                found.append((group, {"kind": _core.Text(name), "position": where}, spring))
         if self.axial_spring is not None:
-            yield self.axial_spring.statement("axial_spring", kind=_core.Text(name))
+            found.append(("axial_spring", {"kind": _core.Text(name)}, self.axial_spring))
+        return found
 
 
 def _by_position(
@@ -269,8 +264,8 @@ class FrameNode:
             support = _arguments.choice(self.support, "FrameNode: support", _SUPPORTS)
             object.__setattr__(self, "support", support)
 
-    def _groups(self, **more: str | None) -> Iterator[_core.Statement]:
-        """Yield the groups of a case file; `more` are names that a building gives it."""
+    def _groups(self, **more: str | None) -> list[Any]:
+        """Return the groups of a case file; `more` are names that a building gives it."""
         values = {
             own.name: getattr(self, own.name) or None
             for own in fields(self)
@@ -280,13 +275,11 @@ class FrameNode:
             if values[name]:
                 values[name] = _core.Text(values[name])
         names = {name: _core.Text(value) if value else None for name, value in more.items()}
-        yield _core.group("node", values | {"x": self.x, "y": self.y, "floor": self.floor} | names)
-        for group in _PLACES:
-            spring = getattr(self, group)
-            if spring is not None:
-                yield spring.statement(group, node=_core.Text(self.name))
-        if self.panel is not None:
-            yield self.panel.statement("flexure", panel=_core.Text(self.name))
+        own = values | {"x": self.x, "y": self.y, "floor": self.floor} | names
+        place = {"node": _core.Text(self.name)}
+        springs = [(group, place, getattr(self, group)) for group in _PLACES]
+        springs.append(("flexure", {"panel": place["node"]}, self.panel))
+        return [("node", own), *(entry for entry in springs if entry[2] is not None)]
 
 
 @dataclass(frozen=True)
@@ -315,7 +308,7 @@ class Member:
     def __post_init__(self) -> None:
         _arguments.convert(self, "Member")
 
-    def _group(self, kind: str, axial_of: str | None = None) -> _core.Statement:
+    def _group(self, kind: str, axial_of: str | None = None) -> Group:
         values = {
             "name": _core.Text(self.name),
             "from": _core.Text(self.start),
@@ -326,7 +319,7 @@ class Member:
             "load": self.load or None,
             "axial_of": _core.Text(axial_of) if axial_of else None,
         }
-        return _core.group("member", values)
+        return "member", values
 
 
 class FrameSpring(NamedTuple):
@@ -546,8 +539,8 @@ def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
 
 def rules_of(
     cells: Mapping[tuple[int, int], Any], at: str, level: str, lines: int
-) -> Iterator[tuple[dict[str, Any], Any]]:
-    """Yield the keys of places and what stands there, in the words of `places_of` where they fit.
+) -> list[tuple[dict[str, Any], Any]]:
+    """Return the keys of places and what stands there, in the words of `places_of` where they fit.
 
     Parameters
     ----------
@@ -560,7 +553,7 @@ def rules_of(
     """
     sides = {"outer": [1, lines], "inner": list(range(2, lines))}
     sides = {word: numbers for word, numbers in sides.items() if len(set(numbers)) > 1}
-    items = list(cells.items())
+    items, found = list(cells.items()), []
     while items:
         (line, storey), cell = items[0]
         place: dict[str, Any] = {at: line or None, level: storey or None}
@@ -573,8 +566,9 @@ def rules_of(
                 for _, other in following
             ):
                 place, count = {f"{at}s": word, level: storey or None}, len(numbers)
-        yield place, cell
+        found.append((place, cell))
         del items[:count]
+    return found
 
 
 def at_place(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
@@ -584,21 +578,32 @@ def at_place(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
 
 
 def cells_of(
-    given: Any, name: str, is_cell: Callable[[Any], bool], kinds: str, lines: int
+    given: Any, name: str, kind: type, lines: int, *, halves: type | None = None
 ) -> dict[tuple[int, int], Any]:
-    """Return the cells of a grid by pairs of line or bay and storey, 0 for all, in their order."""
+    """Return the cells of a grid by pairs of line or bay and storey, 0 for all, in their order.
+
+    A cell is of a kind; or of that of `halves`, or a tuple of two of these.
+    """
+    article = "an" if kind.__name__ == "Infill" else "a"
+    kinds = f"{article} {kind.__name__}"
+    if halves is not None:
+        kinds = f"a {halves.__name__}, a pair of them, {kinds}"
     items = given.items() if isinstance(given, Mapping) else [((0, 0), given)]
     found: dict[tuple[int, int], Any] = {}
     for pair, one in () if given is None else items:
         places = places_of(pair, name, lines)
-        if one is not None and not is_cell(one):
+        paired = halves is not None and isinstance(one, (tuple, list)) and len(one) == 2
+        parts = tuple(one) if paired else (one,)
+        if one is not None and not (
+            isinstance(one, kind) or (halves and all(isinstance(part, halves) for part in parts))
+        ):
             raise InputError(
                 f"frame: {name} = {_arguments.shown(one)} must be {kinds}, or a mapping from pairs "
                 "(line or bay, storey), 0 for all, to these"
             )
         for place in places:
             found.pop(place, None)
-            found[place] = one
+            found[place] = parts if paired else one
     return found
 
 
@@ -634,6 +639,43 @@ def names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
         names[name, own] = name or next(one for one in numbers if one not in taken)
         taken.add(names[name, own])
     return names
+
+
+def groups_of_kinds(names: Mapping[NamedKind, str]) -> list[Group]:
+    """Return the groups of kinds of members, under their names."""
+    return placed([entry for (_, kind), name in names.items() for entry in kind._groups(name)])
+
+
+def groups_of_cells(
+    cells: Mapping[tuple[int, int], Any],
+    group: str,
+    lines: int,
+    names: Mapping[NamedKind, str],
+    drawn: Mapping[Any, dict[str, Any]],
+) -> list[Group]:
+    """Return the groups of what stands in the places of a grid.
+
+    Parameters
+    ----------
+    cells : mapping
+        Kinds of members, and drawings, by line or bay and storey.
+    group : {"column_of", "beam_of"}
+        Its name.
+    lines : int
+        Number of lines or bays.
+    names : mapping
+        Names of the kinds.
+    drawn : mapping
+        Keys that name the drawings of the other cells.
+    """
+    found: list[Group] = []
+    for place, cell in rules_of(cells, "line" if group == "column_of" else "bay", "storey", lines):
+        if isinstance(cell, FrameMember):
+            kind = {"kind": _core.Text(names[stated(cell)])} | rigid_lengths(cell.rigid_end)
+        else:
+            kind = drawn[cell] if cell is not None else {"kind": _core.Text("none")}
+        found.append((group, place | kind))
+    return found
 
 
 def rigid_lengths(rigid_end: float | tuple[float, float]) -> dict[str, float | None]:

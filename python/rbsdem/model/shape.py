@@ -113,7 +113,7 @@ class Section(_Fields, ABC):
     #: Name of the shape of a solid section.
     solid: ClassVar[str]
 
-    @property
+    @cached_property
     def shape(self) -> str:
         """Name of the shape."""
         return f"hollow_{self.solid}" if self.hollow else self.solid
@@ -189,10 +189,11 @@ class Section(_Fields, ABC):
         """Width that carries shear: of a hollow section that of both webs [m]."""
 
     @abstractmethod
-    def part(self, depth: float) -> tuple[float, float]:
+    def part(self, depth: Any) -> tuple[Any, Any]:
         """Return area and first moment about mid-depth of the concrete near one face [m2, m3].
 
-        `depth` is measured from the compression face, y = -depth of the section/2 [m].
+        `depth` is measured from the compression face, y = -depth of the section/2 [m]; of an array
+        of depths they are arrays.
         """
 
     @abstractmethod
@@ -314,7 +315,7 @@ class Section(_Fields, ABC):
             parts.append(self.ties.statement(numbers[self.ties.steel]))
         return _core.joined(parts)
 
-    @property
+    @cached_property
     def hooped(self) -> tuple[float, float]:
         """Depths from the faces y < 0 and y > 0 within which hoops hold the bars [m]."""
         return 0.5 * self.depth, 0.5 * self.depth
@@ -329,12 +330,12 @@ class Section(_Fields, ABC):
         """Whether hoops confine a core."""
         return self.ties is not None
 
-    @property
+    @cached_property
     def hollow(self) -> bool:
         """Whether there is a void in the middle."""
         return self.wall is not None
 
-    @property
+    @cached_property
     def _wall(self) -> float:
         return float(self.wall or 0.0)
 
@@ -356,27 +357,27 @@ class Section(_Fields, ABC):
         """Return the rows of bars upside down."""
         return {}
 
-    @property
+    @cached_property
     def symmetric(self) -> bool:
         """Whether the section is the same upside down."""
         return self.mirrored is self
 
-    @property
+    @cached_property
     def gross_area(self) -> float:
         """Area of the concrete outline [m2]."""
         return self._figures["area"]
 
-    @property
+    @cached_property
     def inertia(self) -> float:
         """Second moment of area of the concrete about its centroid [m4]."""
         return self._figures["inertia"]
 
-    @property
+    @cached_property
     def centroid(self) -> float:
         """Distance of the centroid of the concrete from mid-depth, along y [m]."""
         return self._figures["centroid"]
 
-    @property
+    @cached_property
     def shear_area(self) -> float:
         """Area that carries elastic shear [m2]."""
         return self._figures["shear_area"]
@@ -389,7 +390,7 @@ class Section(_Fields, ABC):
         """
         return sum(area * _share_in_tension(y, self.depth) for y, area, _ in self.bars)
 
-    @property
+    @cached_property
     def steel_area(self) -> float:
         """Area of all longitudinal bars [m2]."""
         return sum(area for _, area, _ in self.bars)
@@ -406,7 +407,7 @@ class Section(_Fields, ABC):
             bars += [(y, 2.0 * math.sqrt(area / count / math.pi))] * count
         return bars
 
-    @property
+    @cached_property
     def steel_ratio(self) -> float:
         """Area of the longitudinal bars over the gross area."""
         return self.steel_area / self.gross_area
@@ -416,7 +417,7 @@ class Section(_Fields, ABC):
         """Least (tension, negative) and largest axial load without bending or confinement [N]."""
         return _core.axial_capacity(self._statement, tension="bare", confined=False)[0]
 
-    @property
+    @cached_property
     def concrete_law(self) -> dict[str, float]:
         """Parameters of the law of the unconfined concrete: fc, ft, ec [Pa], eps0, n, decay."""
         return {name: self._figures[name] for name in ("fc", "ft", "ec", "eps0", "n", "decay")}
@@ -613,7 +614,7 @@ class RectangularSection(Section):
         """Width that carries shear: of a hollow section that of both webs [m]."""
         return 2.0 * self._web if self.hollow else self.width
 
-    def part(self, depth: float) -> tuple[float, float]:
+    def part(self, depth: Any) -> tuple[Any, Any]:
         """Return area and first moment about mid-depth of the concrete near the compression face.
 
         `depth` is measured from that face [m].
@@ -623,7 +624,7 @@ class RectangularSection(Section):
         if not self.hollow:
             return area, first
         high = self.depth - 2.0 * self._wall
-        reached = min(max(depth - self._wall, 0.0), high)
+        reached = np.clip(depth - self._wall, 0.0, high)
         void = reached * (self.width - self.web_width)
         return area - void, first - 0.5 * void * (reached - high)
 
@@ -765,7 +766,7 @@ class TeeSection(RectangularSection):
             )
         super()._finish()
 
-    @property
+    @cached_property
     def shape(self) -> str:
         """Name of the shape."""
         return "tee"
@@ -783,14 +784,14 @@ class TeeSection(RectangularSection):
         wider = self.flange_width > self.width
         return {"flange_below": not self.flange_below} if wider else {}
 
-    def part(self, depth: float) -> tuple[float, float]:
+    def part(self, depth: Any) -> tuple[Any, Any]:
         """Return area and first moment about mid-depth of the concrete near the compression face.
 
         `depth` is measured from that face [m].
         """
         area, first = super().part(depth)
         face = 0.0 if self.flange_below else self.depth - self.flange_thickness
-        reached = min(max(depth - face, 0.0), self.flange_thickness)
+        reached = np.clip(depth - face, 0.0, self.flange_thickness)
         wings = reached * (self.flange_width - self.width)
         return area + wings, first + wings * (face + 0.5 * reached - 0.5 * self.depth)
 
@@ -908,7 +909,7 @@ class CircularSection(Section):
         """Width that carries shear: of a hollow section that of both sides of the wall [m]."""
         return 2.0 * self._wall if self.hollow else self.diameter
 
-    def part(self, depth: float) -> tuple[float, float]:
+    def part(self, depth: Any) -> tuple[Any, Any]:
         """Return area and first moment about mid-depth of the concrete near the compression face.
 
         `depth` is measured from that face [m].
@@ -1048,15 +1049,15 @@ def _around(bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, flo
     return placed
 
 
-def _segment(radius: float, depth: float) -> tuple[float, float]:
+def _segment(radius: float, depth: Any) -> tuple[Any, Any]:
     """Return area and first moment about the centre of the segment of a circle.
 
     `depth` [m] is that of the segment, from the circle at y = -radius; none below 0, all beyond the
     diameter.
     """
-    angle = math.acos(min(max(1.0 - depth / radius, -1.0), 1.0))
-    area = radius**2 * (angle - math.sin(angle) * math.cos(angle))
-    return area, -2.0 / 3.0 * (radius * math.sin(angle)) ** 3
+    angle = np.arccos(np.clip(1.0 - depth / radius, -1.0, 1.0))
+    area = radius**2 * (angle - np.sin(angle) * np.cos(angle))
+    return area, -2.0 / 3.0 * (radius * np.sin(angle)) ** 3
 
 
 def _ring(radius: float) -> Array:

@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache, cached_property
-from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
+from typing import Any, ClassVar, Literal, NamedTuple, TypeAlias, TypeVar, get_args
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from rbsdem._types import Array, ArrayLike, Self
 from rbsdem.errors import InputError
 
 AnySpring = TypeVar("AnySpring", bound="Spring")
+
+#: Name and values of a group of a case file.
+Group: TypeAlias = tuple[str, Mapping[str, Any]]
 
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
@@ -108,12 +111,12 @@ class Spring:
         **place
             Keys that place the spring: `joint` or `id`.
         """
-        if "_own" not in self.__dict__:
-            own = {"rule": self.rule} | {name: getattr(self, name) for name in _names(self.rule)}
-            object.__setattr__(self, "_own", _core.group("", own))
-        own = self.__dict__["_own"]
-        head = _core.group(group, place) if place else _core.Statement(group, [])
-        return _core.Statement(head.text + own.text, head.numbers + own.numbers)
+        return _core.group(group, place | self._keys)
+
+    @cached_property
+    def _keys(self) -> dict[str, Any]:
+        """Its rule and parameters."""
+        return {"rule": self.rule} | {name: getattr(self, name) for name in _names(self.rule)}
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs that in series are equivalent to this one.
@@ -274,6 +277,20 @@ def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
     spring = object.__new__(kind)
     spring.__dict__.update(_defaults(kind.rule), **plain)
     return spring
+
+
+def unchecked_joint(layers: Iterable[tuple[float, type[Spring], dict[str, Any]]]) -> Layered:
+    """Make a joint of layers without checking it: places, classes and parameters of its springs.
+
+    Layers with one and the same dictionary of parameters have one spring.
+    """
+    springs: dict[int, Spring] = {}
+    made = []
+    for y, kind, values in layers:
+        if id(values) not in springs:
+            springs[id(values)] = unchecked(kind, **values)
+        made.append((y, springs[id(values)]))
+    return unchecked(Layered, layers=tuple(made))
 
 
 def check_springs(springs: Iterable[Spring]) -> None:
@@ -672,20 +689,10 @@ class Layered(Spring):
 
     def _alone(self) -> _core.Statement:
         """Return the spring with its layers, as a case of one joint."""
-        ids: dict[Spring, int] = {}
-        layers = self.layers_statement(ids)
-        return self.statement("flexure") + layer_springs(ids) + layers
+        return _core.joined(placed([("flexure", {}, self)]))
 
-    def layers_statement(self, ids: dict[Spring, int], **place: Any) -> _core.Statement:
-        """Return the layers as a group of a case.
-
-        Parameters
-        ----------
-        ids : dict
-            Ids of the springs of layers; new springs are added.
-        **place
-            `joint`, unless all joints have these layers.
-        """
+    def layers_group(self, ids: dict[Spring, int], place: Mapping[str, Any]) -> Group:
+        """Return the layers as a group of a case; new springs of layers are added to the ids."""
         # Most layers have one and the same spring: what it is equal to is asked once.
         known: dict[int, int] = {}
         numbers = []
@@ -694,7 +701,7 @@ class Layered(Spring):
             if number is None:
                 number = known[id(spring)] = ids.setdefault(spring, len(ids) + 1)
             numbers.append(number)
-        return _core.group("layers", place | {"y": [y for y, _ in self.layers], "spring": numbers})
+        return "layers", {**place, "y": [y for y, _ in self.layers], "spring": numbers}
 
     @cached_property
     def points(self) -> list[tuple[float, list[Landmark]]]:
@@ -752,9 +759,24 @@ def _response(spring: _core.Statement, path: Array, axial_load: float) -> Array:
     return _core.evaluate("spring_response", spring, **given).values
 
 
-def layer_springs(ids: dict[Spring, int]) -> _core.Statement:
-    """Return the springs of layers as groups of a case, each once, with their ids."""
-    return _core.joined([spring.statement("layer_spring", id=i) for spring, i in ids.items()])
+def placed(entries: Iterable[Group | tuple[str, Mapping[str, Any], Spring]]) -> list[Group]:
+    """Return groups of a case, with the keys of the springs that stand in some, and their layers.
+
+    Parameters
+    ----------
+    entries : iterable
+        Groups: name and values, and the spring that stands there. Springs of layers follow at the
+        end, each once, with their ids.
+    """
+    found: list[Group] = []
+    ids: dict[Spring, int] = {}
+    for name, place, *springs in entries:
+        found.append((name, place))
+        for spring in springs:
+            found[-1] = name, {**place, **spring._keys}
+            if isinstance(spring, Layered):
+                found.append(spring.layers_group(ids, place))
+    return found + [("layer_spring", {"id": i, **spring._keys}) for spring, i in ids.items()]
 
 
 #: Parts that a layer stands for: a bar, concrete inside the ties, concrete outside.

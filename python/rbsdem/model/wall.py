@@ -457,7 +457,7 @@ class WallSection(Section):
             for end in self.ends
         ]
 
-    def part(self, depth: float) -> tuple[float, float]:
+    def part(self, depth: Any) -> tuple[Any, Any]:
         """Return area and first moment about mid-length of the concrete near the end y < 0.
 
         `depth` is measured from that end [m].
@@ -466,10 +466,10 @@ class WallSection(Section):
         area = self.thickness * depth
         moment = 0.5 * area * (depth - self.length)
         for begin, size, thickness in ((0.0, near, first), (self.length - far, far, last)):
-            reached = min(max(depth - begin, 0.0), size)
+            reached = np.clip(depth - begin, 0.0, size)
             wings = reached * (thickness - self.thickness)
-            area += wings
-            moment += wings * (begin + 0.5 * reached - 0.5 * self.length)
+            area = area + wings
+            moment = moment + wings * (begin + 0.5 * reached - 0.5 * self.length)
         return area, moment
 
     def outline(self) -> Array:

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, Literal, TypeAlias, get_args, overload
 
 from rbsdem import _arguments
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
+from rbsdem.model.column import MOST_BODIES, Column, Footing, Top
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.materials import CONCRETE_DENSITY
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Pinching, Spring, Takeda, unchecked
 from rbsdem.model.wall import WallSection
-from rbsdem.section.curvature import axial_load_note, column_length
+from rbsdem.section.curvature import column_length
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
@@ -306,28 +306,34 @@ def member(
     if halves[0] == halves[1] and getattr(halves[1], "lap", None) is not None:
         # Bars of a column are lapped at its foot.
         halves = halves[0], replace(halves[1], lap=None)  # type: ignore[call-arg]
-    if model_parameters is None and not axial_load:
-        model_parameters = parameters().with_values(**_BARS_OF_BEAMS)
     length = column_length(length, "length")
-    common: Any = {"model_parameters": model_parameters, "restrained": restrained}
-    start, end = (column(one, 0.5 * length, axial_load=axial_load, **common) for one in halves)
-    (hinge, above), (last, below) = start.joints("flexure"), end.joints("flexure")
-    (_, slips), (_, slides) = start.joints("shear"), end.joints("shear")
+    axial_load = _arguments.number(axial_load, "axial_load")
+    if restrained is not None:
+        restrained = _arguments.integer(restrained, "restrained")
     load = _arguments.number(load, "load", least=0.0)
+    values = _known(model_parameters) if model_parameters or axial_load else _of_beams()
+    start = end = _half(halves[0], length, axial_load, values, restrained)
+    if halves[1] != halves[0]:
+        end = _half(halves[1], length, axial_load, values, restrained)
     spans = shear_spans or _spans(halves, length, axial_load, load)
-    fails, falls = (_shear(half, own) for half, own in zip((start, end), spans, strict=True))
-    near, far = (bodies(half)[0][0] / length for half in (start, end))
+    # Equal halves with equal spans are made once.
+    alike = end is start and spans[0] == spans[1]
+    sides = [(start, spans[0]), (end, spans[1])][: 1 if alike else 2]
+    shears = [_shear(*side) for side in sides]
+    fails, falls = shears[0], shears[-1]
+    ((_, above), bodies), ((_, below), others) = start.bending, end.bending
+    near, far = bodies[0] / length, others[0] / length
     failures = [
-        _failure(one, own[0], axial_load, shear)
-        for one, own, shear in zip(halves, spans, (fails, falls), strict=True)
+        _failure(half, own[0], shear)
+        for (half, own), shear in zip(sides, shears, strict=True)
         if axial_load > 0
     ]
     drift = min((one for one, _, _ in failures), default=None)
     failure_load = min((one for _, one, _ in failures), default=None)
     modulus, area, depth = (
-        0.5 * (one + other) for one, other in zip(*(_elastic(half) for half in halves), strict=True)
+        0.5 * (one + other) for one, other in zip(*map(_elastic, halves), strict=True)
     )
-    joints = {0.0: hinge, 1.0: last}
+    joints: dict[float, Any] = {0.0: start.joint.spring, 1.0: end.joint.spring}
     if load > 0.0:
         # Between two cracked joints the rest is cracked too. It turns by its mean moment under the
         # load, so that nothing is made up for lumping.
@@ -335,7 +341,7 @@ def member(
             unchecked(Elastic, k=one.k_y / lumping(2)) if isinstance(one, Takeda) else one
             for one in (above, below)
         )
-        dry = _known(model_parameters).with_values(slip_length=0.0)
+        dry = values.with_values(slip_length=0.0)
         # Bars that are more over one support end before the middle.
         least = min(halves, key=lambda one: one.steel_area)
         middle = LayeredModel(least, 0.5 * length, axial_load, 2, dry, restrained)
@@ -349,7 +355,12 @@ def member(
         area=area * length / max(length - hinges, 0.1 * length),
         inertia=area * depth**2 / 12,
         flexure={**joints, near: above, 1 - far: below.mirrored()},
-        shear={0.0: fails, 0.5 * near: slips, 1 - 0.5 * far: slides, 1.0: falls.mirrored()},
+        shear={
+            0.0: fails,
+            0.5 * near: start.no_slip,
+            1 - 0.5 * far: end.no_slip,
+            1.0: falls.mirrored(),
+        },
         interior="rigid",
         rigid_end=rigid_end,
         length=length,
@@ -392,21 +403,47 @@ def plastic_moments(section: Section, axial_load: float) -> Pair:
     return first, second
 
 
-def _shear(half: LayeredColumn, spans: Pair) -> Pinching:
+@cache
+def _of_beams() -> ModelParameters:
+    return parameters().with_values(**_BARS_OF_BEAMS)
+
+
+def _half(
+    section: Section,
+    length: float,
+    axial_load: float,
+    values: ModelParameters,
+    restrained: int | None,
+) -> LayeredModel:
+    """Return the half of a member as a cantilever, and tell what is odd about it."""
+    _check_lap(checked_section(section), "free")
+    model = LayeredModel(section, 0.5 * length, axial_load, 2, values, restrained)
+    _check_own(model)
+    if model.notes:
+        warn("; ".join(model.notes))
+    return model
+
+
+def _check_own(model: LayeredModel) -> None:
+    """Refuse parameters that a user gave, beyond what they can change in a column."""
+    # Those of another version are meant for all columns: what a column limits is limited.
+    if model.parameters.version == VERSION and model.parameters is not _of_beams():
+        model.check(model.parameters.own)
+
+
+def _shear(half: LayeredModel, spans: Pair) -> Pinching:
     """Return the shear spring of a half for its shear spans."""
-    model = half._drawing
-    drawn = model.section, model.height, model.axial_load, model.joint.shear_stiffness
-    return shear_spring(*drawn, model.parameters, model.joint, spans=spans)[0]
+    drawn = half.section, half.height, half.axial_load, half.joint.shear_stiffness
+    return shear_spring(*drawn, half.parameters, half.joint, spans=spans)[0]
 
 
 def _elastic(section: Section) -> tuple[float, float, float]:
     return section.concrete_law["ec"], section.gross_area, section.depth
 
 
-def _failure(
-    section: Section, span: float, axial_load: float, shear: Pinching
-) -> tuple[float, float, float | None]:
-    """Return when a member whose hinges have yielded fails in shear, and loses its axial load."""
+def _failure(half: LayeredModel, span: float, shear: Pinching) -> tuple[float, float, float | None]:
+    """Return when a member whose hinges have yielded loses its axial load, and fails in shear."""
+    section, axial_load = half.section, half.axial_load
     drift, halves = axial_failure_law(section)
     force = nominal_moment(section, axial_load) / span
     # Below that share of its strength in shear it is flexure that limits a column (ASCE 41-17).
@@ -430,14 +467,10 @@ def _layered(
         raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
     hinge = section, height, axial_load, n or 2
     drawing = LayeredModel(*hinge, _known(model_parameters), *hoops, shear_span)
-    if model_parameters is not None and model_parameters.version == VERSION:
-        # Those of another version are meant for all columns: what a column limits is limited.
-        drawing.check(model_parameters.own)
+    _check_own(drawing)
     made = LayeredColumn(height, n=drawing.n, drawing=drawing, **drawing.made, **common)
-    note = axial_load_note(axial_load, section)
-    warnings = [note, *made.warnings] if note else made.warnings
-    if warnings:
-        warn("; ".join(warnings))
+    if drawing.notes:
+        warn("; ".join(drawing.notes))
     return made
 
 

@@ -67,7 +67,7 @@ def column_length(value: Any, name: str) -> float:
     InputError
         If it is not a number, or no length of a column in metres.
     """
-    length = _arguments.number(value, name)
+    length = value if type(value) is float else _arguments.number(value, name)
     if _SHORTEST <= length <= _LONGEST:
         return length
     hint = "1600 mm is 1.6"

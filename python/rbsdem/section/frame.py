@@ -25,22 +25,21 @@ from rbsdem.model.frame import (
     Span,
     at_place,
     cells_of,
+    groups_of_cells,
+    groups_of_kinds,
     index_of,
     names_of,
-    rigid_lengths,
-    rules_of,
     stated,
     with_rigid_end,
 )
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Landmark, Layered, Spring, layer_springs
+from rbsdem.model.springs import Group, Landmark, Layered, Spring, placed
 from rbsdem.model.wall import WallSection
 from rbsdem.section.grid import (
     Cells,
     FrameDrawing,
     Grid,
-    cells_of_sections,
     cells_of_walls,
     halves_of,
     infill_groups,
@@ -173,11 +172,7 @@ class Frame:
             put(name, tuple(given.tolist() if np.ptp(given) else given[:1].tolist()))
         for name in ("columns", "beams"):
             lines = len(self.bays or ()) + (name == "columns")  # type: ignore[arg-type]
-            given = getattr(self, name)
-            cells = cells_of(
-                given, name, lambda one: isinstance(one, FrameMember), "a FrameMember", lines
-            )
-            put(name, cells or None)
+            put(name, cells_of(getattr(self, name), name, FrameMember, lines) or None)
         for name, kind in (("nodes", FrameNode), ("members", Member)):
             items = tuple(_arguments.several(getattr(self, name), f"frame: {name}", name))
             for item in items:
@@ -508,44 +503,30 @@ class Frame:
             for name in ("storeys", "bays", "diaphragm", "control_node", *usual)
         }
         own_values = {k: v for k, v in grid.items() if v not in (None, False, "", usual.get(k))}
-        parts = [_core.group("frame", own_values | more)]
+        parts: list[_core.Statement | Group] = [("frame", own_values | more)]
         lines = len(self.bays or ()) + 1  # type: ignore[arg-type]
         parts += self._floors() if drawing is None else drawing.floors(lines)
-        layers: dict[Spring, int] = {}
-        for (_, kind), name in names.items():
-            parts += kind._groups(name, layers)
-        parts.append(layer_springs(layers))
-        keys: dict[Any, dict[str, Any]] = {None: {"kind": _core.Text("none")}, **drawn}
-
-        def keys_of(cell: Any) -> dict[str, Any]:
-            if not isinstance(cell, FrameMember):
-                return keys[cell]
-            return {"kind": _core.Text(names[stated(cell)])} | rigid_lengths(cell.rigid_end)
-
-        for group, at, own_cells in zip(
-            ("column_of", "beam_of"), ("line", "bay"), grids, strict=True
-        ):
-            lines = len(self.bays or ()) + (at == "line")  # type: ignore[arg-type]
-            for place, cell in rules_of(own_cells, at, "storey", lines):
-                parts.append(_core.group(group, place | keys_of(cell)))
-        for node in self.nodes if drawing is None else drawing.nodes:
-            parts += node._groups()
+        parts += groups_of_kinds(names)
+        parts += groups_of_cells(grids[0], "column_of", lines, names, drawn)
+        parts += groups_of_cells(grids[1], "beam_of", lines - 1, names, drawn)
+        nodes = self.nodes if drawing is None else drawing.nodes
+        parts += placed([entry for node in nodes for entry in node._groups()])
         parts += [member._group(names[stated(member.kind)]) for member in members]
         parts += self.loss_groups()
         if self.panel is not None:
-            parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
+            parts += placed([("flexure", {"panel": _core.Text("all")}, self.panel)])
         if isinstance(self.damping, Damping):
             parts.append(self.damping.statement())
         return _core.joined(parts)
 
-    def loss_groups(self) -> list[_core.Statement]:
+    def loss_groups(self) -> list[Group]:
         """Return the groups of members that are lost."""
         return [
-            _core.group("loss", {"member": _core.Text(member), "time": time})
+            ("loss", {"member": _core.Text(member), "time": time})
             for member, time in (self.losses or {}).items()
         ]
 
-    def _floors(self) -> Iterator[_core.Statement]:
+    def _floors(self) -> Iterator[Group]:
         masses, loads = self.floor_mass, self.beam_load
         count = max(len(masses), len(loads))  # type: ignore[arg-type]
         for i in range(count):
@@ -554,7 +535,7 @@ class Frame:
             if mass or load:
                 floor = None if count == 1 else i + 1
                 values = {"floor": floor, "mass": mass or None, "dead_load": load or None}
-                yield _core.group("floor", values)
+                yield "floor", values
 
     @classmethod
     def grid(
@@ -636,10 +617,10 @@ class Frame:
         if mass is not None:
             _arguments.choice(mass, "frame: mass", ("from_loads",))
         lines = len(widths) + 1
-        upright = cells_of_sections(columns, "columns", lines) | cells_of_walls(
-            walls, lines, len(heights)
-        )
-        grid = Grid(heights, widths, upright, cells_of_sections(beams, "beams", lines - 1))
+        upright = cells_of(columns, "columns", FrameMember, lines, halves=Section)
+        upright |= cells_of_walls(walls, lines, len(heights))
+        level = cells_of(beams, "beams", FrameMember, lines - 1, halves=Section)
+        grid = Grid(heights, widths, upright, level)
         given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
         for node in given:
             _arguments.instance(node, "frame: nodes", FrameNode)
@@ -650,9 +631,7 @@ class Frame:
             grid.given[1],
             ends if ends is not None else "asce" if panel_hoops is None else 1.0,
             panel_hoops,
-            cells_of(
-                infills, "infills", lambda one: isinstance(one, Infill), "an Infill", lines - 1
-            ),
+            cells_of(infills, "infills", Infill, lines - 1),
             tuple(dead.tolist()),
             grid.floors(live_load, "live_load"),
             _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0),

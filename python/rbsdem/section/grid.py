@@ -21,13 +21,13 @@ from rbsdem.model.frame import (
     Member,
     Place,
     at_place,
-    cells_of,
     places_of,
     rules_of,
     with_rigid_end,
 )
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
+from rbsdem.model.springs import Group
 from rbsdem.model.wall import WallSection
 from rbsdem.section.columns import member, plastic_moments
 from rbsdem.section.infill import Infill, InfilledBay
@@ -106,7 +106,7 @@ class FrameDrawing:
     wall_spans: tuple[float, ...] = ()
     made: _core.Statement | None = field(default=None, repr=False)
 
-    def floors(self, lines: int) -> Iterator[_core.Statement]:
+    def floors(self, lines: int) -> Iterator[Group]:
         """Yield the groups of floors, and of loads of nodes on a number of lines."""
         masses = () if self.floor_mass is None else np.atleast_1d(self.floor_mass).tolist()
         columns = {"mass": masses, "dead_load": self.dead_load, "live_load": self.live_load}
@@ -122,9 +122,9 @@ class FrameDrawing:
                 for name, values in columns.items()
             }
             if any(of_floor.values()):
-                yield _core.group("floor", {"floor": i + 1 if count > 1 else None, **of_floor})
+                yield "floor", {"floor": i + 1 if count > 1 else None, **of_floor}
         for place, load in rules_of(self.node_load, "line", "floor", lines):
-            yield _core.group("node_load", place | {"load": load})
+            yield "node_load", place | {"load": load}
 
 
 def infill_groups(cells: Mapping[tuple[int, int], Infill | None], bays: int) -> _core.Statement:
@@ -133,15 +133,15 @@ def infill_groups(cells: Mapping[tuple[int, int], Infill | None], bays: int) -> 
     taken = {one.name for one in infills}
     free = (name for name in (f"infill-{i}" for i in count(1)) if name not in taken)
     names: dict[Infill | None, str] = {one: one.name or next(free) for one in infills}
-    parts = []
+    parts: list[Group] = []
     for one in infills:
         length, height = one.opening or (None, None)
         given = {name: getattr(one, name) for name in ("thickness", "fm", "strength", "peak_drift")}
         given |= {"opening_length": length, "opening_height": height}
-        parts.append(_core.group("infill", {"name": _core.Text(names[one])} | given))
+        parts.append(("infill", {"name": _core.Text(names[one])} | given))
     for place, cell in rules_of(cells, "bay", "storey", bays):
         kind = _core.Text(names.get(cell, "none"))
-        parts.append(_core.group("infill_of", place | {"kind": kind}))
+        parts.append(("infill_of", place | {"kind": kind}))
     return _core.joined(parts)
 
 
@@ -162,18 +162,6 @@ def _masses(given: Any, floors: Array, mass: str | None) -> dict[str, Any]:
             f"{floors[at]:.4g} kg; leave out floor_mass, or mass"
         )
     return {"floor_mass": given}
-
-
-def cells_of_sections(given: Any, name: str, lines: int) -> dict[tuple[int, int], Any]:
-    """Return the cells of a grid; halves are a tuple."""
-    kinds = "a Section, a pair of them, a FrameMember"
-    cells = cells_of(given, name, _is_cell, kinds, lines)
-    return {at: tuple(one) if isinstance(one, list) else one for at, one in cells.items()}
-
-
-def _is_cell(one: Any) -> bool:
-    halves = one if isinstance(one, (tuple, list)) and len(one) == 2 else (one,)
-    return isinstance(one, FrameMember) or all(isinstance(part, Section) for part in halves)
 
 
 def cells_of_walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSection]:
@@ -287,8 +275,12 @@ class Grid:
             loads = loads + self.weights_of_beams()
         nodes = {node.name: node for node in drawing.nodes}
         for name, weight in self.weights(drawing.node_load, drawing.self_weight).items():
-            node = nodes.get(name, FrameNode(name))
-            nodes[name] = replace(node, load_y=node.load_y - weight)
+            node = nodes.get(name)
+            nodes[name] = (
+                replace(node, load_y=node.load_y - weight)
+                if node is not None
+                else FrameNode(name, load_y=-weight)
+            )
         floors = loads * sum(self.bays) / STANDARD_GRAVITY
         for i, k in self.columns:
             if (loaded := nodes.get(f"N-{i}-{k}")) is not None:

@@ -8,14 +8,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, cast
 
 from rbsdem import _core
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Steel
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import ConcreteSpring, Gauge, Layered, Part, SteelSpring, unchecked
+from rbsdem.model.springs import (
+    ConcreteSpring,
+    Gauge,
+    Layered,
+    Part,
+    Spring,
+    SteelSpring,
+    unchecked_joint,
+)
 from rbsdem.section.parameters import ModelParameters
 
 _STRIPS = 10
@@ -72,6 +80,7 @@ class Strips:
     hoop_pressure: tuple[float, float]
 
 
+@lru_cache(maxsize=1024)
 def strips_of(
     section: Section, number: int, *, restrained: int | None = None, round_core: bool = False
 ) -> Strips:
@@ -228,11 +237,10 @@ def hinge_joint(
 
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     @cache
-    def concrete(area: float, stress: float, strain: float, softening: float) -> ConcreteSpring:
+    def concrete(area: float, stress: float, strain: float, softening: float) -> dict[str, Any]:
         # The spring of a strip with a strength and the strain at it.
         secant = 1.3 * stress / strain
-        return unchecked(
-            ConcreteSpring,
+        return dict(
             k=max(modulus, secant) * area / concrete_length,
             f_peak=stress * area,
             d_peak=strain * concrete_length,
@@ -241,7 +249,7 @@ def hinge_joint(
             **{name: getattr(given, name) for name in ("plastic", "misfit", "wear", "friction")},
         )
 
-    layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
+    layers: list[tuple[float, type[Spring], dict[str, Any]]] = []
     core_slopes = []
     for gain, pressure in zip(gains, strips.hoop_pressure, strict=True):
         ultimate = 0.004 + 0.14 * pressure / (gain * strength)
@@ -251,22 +259,24 @@ def hinge_joint(
     for strip in strips.core:
         gain, softening = gains[strip.y > 0], given.core_softening * core_slopes[strip.y > 0]
         at_peak = gain * strength, peak * (1 + 5 * (gain - 1))
-        layers.append((strip.y, concrete(round(strip.area, 12), *at_peak, softening)))
+        layers.append(
+            (strip.y, ConcreteSpring, concrete(round(strip.area, 12), *at_peak, softening))
+        )
     cover_slope = 0.8 * strength / 0.004
     softening = given.cover_softening * cover_slope
-    for strip in strips.cover:
-        layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening)))
-    slip = given.slip_length * bond
+    layers += [
+        (strip.y, ConcreteSpring, concrete(round(strip.area, 12), strength, peak, softening))
+        for strip in strips.cover
+    ]
     high = min(axial_load / section.gross_area / 40e6, 1.5)
-    growth = given.isotropic_hardening * _growing(section, ratio)
+    slip, growth = given.slip_length * bond, given.isotropic_hardening * _growing(section, ratio)
     buckles = given.buckling > 0 and given.fatigue > 0
 
     @cache
-    def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
+    def bar(area: float, steel: Steel, pressure: float) -> dict[str, Any]:
         fy, fu, hardens = _strength_of(section, steel, given)
         stiffness = steel.es * area / (steel_length + slip)
-        return unchecked(
-            SteelSpring,
+        return dict(
             k=stiffness,
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
@@ -280,7 +290,8 @@ def hinge_joint(
 
     for y, area, steel in section.bars:
         hooped = abs(y) >= 0.5 * depth - section.hooped[y > 0]
-        layers.append((y, bar(area, steel, strips.hoop_pressure[y > 0] if hooped else 0.0)))
+        pressure = strips.hoop_pressure[y > 0] if hooped else 0.0
+        layers.append((y, SteelSpring, bar(area, steel, pressure)))
     centre = section.centroid
     of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
@@ -292,7 +303,7 @@ def hinge_joint(
     stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
     walls = given.wall_stiffness if section.shape == "wall" else 1.0
     return HingeJoint(
-        unchecked(Layered, layers=tuple(layers)),
+        unchecked_joint(layers),
         concrete_length,
         walls * stiffness * (modulus * section.inertia + of_bars),
         walls * given.shear_stiffness * modulus / 2.4 * section.shear_area,

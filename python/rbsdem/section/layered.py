@@ -173,24 +173,42 @@ class LayeredModel:
             )
 
     @cached_property
-    def made(self) -> dict[str, Any]:
-        """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths, model.
+    def bending(self) -> tuple[tuple[Spring, ...], tuple[float, ...]]:
+        """Springs of the joints from the foot up, and the lengths of the bodies.
 
-        Joints that may crack stand at the middles of n - 1 equal parts above the hinge. All slip is
-        at the foot: where the column fails in shear is where it bends most.
+        Joints that may crack stand at the middles of n - 1 equal parts above the hinge.
         """
         joint, n = self.joint, self.n
         lengths, part = body_lengths(self.height, joint.length, n)
         # Flexible as the continuous column, whatever n is.
         stiffness = joint.flexural_stiffness / part * lumping(n)
-        rigid = unchecked(Elastic, k=1e3 * joint.shear_stiffness / self.height)
+        return (joint.spring, *(self.above(stiffness, n - 1 - i) for i in range(n - 1))), lengths
+
+    @cached_property
+    def no_slip(self) -> Elastic:
+        """The shear spring of the joints above the foot.
+
+        All slip is at the foot: where the column fails in shear is where it bends most.
+        """
+        return unchecked(Elastic, k=1e3 * self.joint.shear_stiffness / self.height)
+
+    @cached_property
+    def made(self) -> dict[str, Any]:
+        """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths, model."""
         slips = part_of_height(self.shear[0], self.height / self.span)
+        flexure, lengths = self.bending
         return {
-            "shear": (slips, *[rigid] * (n - 1)),
-            "flexure": (joint.spring, *(self.above(stiffness, n - 1 - i) for i in range(n - 1))),
+            "shear": (slips, *[self.no_slip] * (self.n - 1)),
+            "flexure": flexure,
             "lengths": lengths,
             "model": f"layered {self.parameters.label}",
         }
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to tell of an odd axial load, and of values outside the tests of the fit."""
+        note = axial_load_note(self.axial_load, self.section)
+        return (*filter(None, [note]), *range_warnings(self.section, self.span, self.axial_load))
 
     def above(self, stiffness: float, low: float, high: float | None = None) -> Spring:
         """Return the spring of a joint above the hinge.
@@ -287,9 +305,8 @@ class LayeredColumn(Column):
             if getattr(self, name) == value:
                 object.__setattr__(self, name, now.fields_for(self.top)[name])
         object.__setattr__(self, "drawing", now)
-        notes = (axial_load_note(axial_load, now.section), *self.warnings)
-        if any(notes):
-            warn("; ".join(filter(None, notes)))
+        if now.notes:
+            warn("; ".join(now.notes))
 
     @property
     def _is_other(self) -> bool:

@@ -372,7 +372,10 @@ def rigid_ends(
     of both, as in a node with a beam on each side, or where the load comes from both sides.
     """
     sections = [
-        [checked_section(one) for one in ([given] if isinstance(given, Section) else given)]
+        [
+            one if isinstance(one, Section) else checked_section(one)
+            for one in ([given] if isinstance(given, Section) else given)
+        ]
         for given in (columns, beams)
     ]
     if not all(sections):

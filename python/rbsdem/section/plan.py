@@ -18,12 +18,13 @@ from rbsdem.model.frame import (
     FrameMember,
     FrameNode,
     Member,
+    groups_of_kinds,
     index_of,
     names_of,
     stated,
     with_rigid_end,
 )
-from rbsdem.model.springs import Spring, layer_springs
+from rbsdem.model.springs import Group, placed
 from rbsdem.section.frame import SCOPE_NOTE, Frame
 
 #: Places in plan that are nearer than this are one [m].
@@ -254,11 +255,11 @@ class Building(Frame):
             "control_node": _core.Text(self.control_node) if self.control_node else None,
             "direction": self.direction or None,
         }
-        parts = [_core.group("frame", own)]
+        parts: list[_core.Statement | Group] = [("frame", own)]
         for plane in self.planes:
             own = {"name": _core.Text(plane.name), "angle": plane.angle or None}
             own |= {"arm": plane.arm or None, "along": plane.along}
-            parts.append(_core.group("plane", own))
+            parts.append(("plane", own))
         for i, (mass, inertia, centre) in enumerate(
             zip(self.plan_mass, self.inertia, self.centres, strict=True)
         ):
@@ -269,15 +270,12 @@ class Building(Frame):
                 "centre_y": centre[1],
             }
             numbers = {k: float(v) or None for k, v in values.items()}
-            parts.append(_core.group("floor", {"floor": i + 1, **numbers}))
+            parts.append(("floor", {"floor": i + 1, **numbers}))
         names = names_of([member.kind for member in self.members])
-        layers: dict[Spring, int] = {}
-        for (_, kind), name in names.items():
-            parts += kind._groups(name, layers)
-        parts.append(layer_springs(layers))
+        parts += groups_of_kinds(names)
         for node in self.nodes:
             at = node.name.split(":")[0]
-            parts += node._groups(plane=at, rises_with=self.rises.get(node.name))
+            parts += placed(node._groups(plane=at, rises_with=self.rises.get(node.name)))
         for member in self.members:
             name = names[stated(member.kind)]
             parts.append(member._group(name, axial_of=self.axial_of.get(member.name)))

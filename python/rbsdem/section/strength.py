@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from typing import Literal, get_args
@@ -27,7 +27,7 @@ from rbsdem import _arguments, _core
 from rbsdem._files import Tabular
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Bar, Spiral, Steel
+from rbsdem.model.materials import Spiral, Steel
 from rbsdem.model.shape import CircularSection, Section, checked_section
 from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.curvature import (
@@ -288,30 +288,32 @@ class _Block:
     steel_factor: float = 1.0
 
     @cached_property
-    def _depth_and_bars(self) -> tuple[float, Sequence[Bar]]:
-        return self.section.depth, self.section.bars
+    def _bars(self) -> Array:
+        """Places, areas, modulus and yield stress of the bars, a row each."""
+        rows = [(y, area, steel.es, steel.fy) for y, area, steel in self.section.bars]
+        return np.array(rows).reshape(-1, 4).T[:, :, None]
 
-    def point(self, axis: float, strains: Callable[[Array], Array]) -> tuple[float, float]:
-        """Return axial load and moment for a neutral axis; strains of bars by their places."""
-        depth, bars = self._depth_and_bars
-        deep = min(self.share * axis, depth)
+    def curve(self, axes: Array, strains: Callable[[Array, Array], Array]) -> Array:
+        """Return axial loads and moments for neutral axes, shape (2, axes).
+
+        `strains` are those of bars by neutral axes and places, shape (bars, axes).
+        """
+        depth, (y, bar, modulus, yields) = self.section.depth, self._bars
+        limit, deep = self.steel_factor * yields, np.minimum(self.share * axes, depth)
         area, first = self.section.part(deep)
-        load, moment = self.stress * area, -self.stress * first
-        strained = strains(np.array([y for y, _, _ in bars])).tolist()
-        for (y, bar, steel), strain in zip(bars, strained, strict=True):
-            limit = self.steel_factor * steel.fy
-            stress = min(max(strain * steel.es, -limit), limit)
-            if y + 0.5 * depth <= deep and stress > 0:
-                stress -= self.stress
-            load += stress * bar
-            moment -= stress * bar * y
-        return load, moment
+        force = np.clip(strains(axes, y) * modulus, -limit, limit)
+        # A bar displaces the concrete of the block.
+        force = bar * (force - self.stress * ((y + 0.5 * depth <= deep) & (force > 0.0)))
+        load = self.stress * area + force.sum(axis=0)
+        return np.array([load, -self.stress * first - (force * y).sum(axis=0)])
 
-    def extremes(self, strain: float) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the points of bars that all yield in tension, and of uniform compression."""
-        pulled = self.point(0.0, lambda y: np.full(y.shape, -math.inf))
-        pressed = self.point(math.inf, lambda y: np.full(y.shape, strain))
-        return pulled, pressed
+    def whole_curve(
+        self, axes: Array, strains: Callable[[Array, Array], Array], strain: float
+    ) -> Array:
+        """Return the curve between bars that all yield in tension and uniform compression."""
+        pulled = self.curve(np.zeros(1), lambda _, y: np.full_like(y, -math.inf))
+        pressed = self.curve(np.full(1, math.inf), lambda _, y: np.full_like(y, strain))
+        return np.hstack([pulled, self.curve(axes, strains), pressed])
 
 
 def _axes(section: Section, ultimate: float, count: int, strains: list[float]) -> Array:
@@ -351,8 +353,9 @@ def _aci_block(section: Section) -> _Block:
     return _Block(section, 0.85 * fc, block_share(fc / _MPA))
 
 
-def _aci_strains(depth: float, axis: float) -> Callable[[Array], Array]:
-    return lambda y: _ACI_STRAIN * (1.0 - (y + 0.5 * depth) / axis)
+def _aci_strains(section: Section) -> Callable[[Array, Array], Array]:
+    half = 0.5 * section.depth
+    return lambda axis, y: np.asarray(_ACI_STRAIN * (1.0 - (y + half) / axis))
 
 
 def nominal_moment(section: Section, axial_load: float) -> float:
@@ -382,19 +385,19 @@ def nominal_point(section: Section, axial_load: float) -> tuple[float, float]:
     axial_load : float
         Compression positive [N].
     """
-    block, depth = _aci_block(section), section.depth
-
-    def at(axis: float) -> tuple[float, float]:
-        return block.point(axis, _aci_strains(depth, axis))
-
-    low, high = 1e-6 * depth, 1e6 * depth
-    if not at(low)[0] <= axial_load <= at(high)[0]:
+    block, strains = _aci_block(section), _aci_strains(section)
+    # The axis goes over twelve powers of ten; then its range is cut into parts, again and again.
+    axes = section.depth * np.geomspace(1e-6, 1e6, 513)
+    load, moment = block.curve(axes, strains)
+    if not load[0] <= axial_load <= load[-1]:
         return math.nan, math.nan
-    while high - low > 1e-14 * high:
-        # The axis goes over twelve powers of ten: halved by its logarithm first.
-        middle = math.sqrt(low * high) if high > 2.0 * low else 0.5 * (low + high)
-        low, high = (middle, high) if at(middle)[0] < axial_load else (low, middle)
-    return high, at(high)[1]
+    while True:
+        at = max(int(np.argmax(load >= axial_load)), 1)
+        low, high = axes[at - 1 : at + 1].tolist()
+        if high - low <= 1e-14 * high:
+            return high, float(moment[at])
+        axes = np.linspace(low, high, 513)
+        load, moment = block.curve(axes, strains)
 
 
 def _aci_318(section: Section, count: int) -> InteractionDiagram:
@@ -403,10 +406,9 @@ def _aci_318(section: Section, count: int) -> InteractionDiagram:
     outermost, steel = _outermost(section)
     yields = steel.fy / steel.es
     axes = _axes(section, ultimate, count, [0.0, yields, yields + 0.003, 0.005])
-    rows = [block.point(axis, _aci_strains(section.depth, axis)) for axis in axes]
-    pulled, pressed = block.extremes(math.inf)
-    load, moment = np.array([pulled, *rows, pressed]).T
-    inner = [-_aci_strains(section.depth, axis)(np.array([outermost]))[0] for axis in axes]
+    strains = _aci_strains(section)
+    load, moment = block.whole_curve(axes, strains, math.inf)
+    inner = -strains(axes, np.array(outermost))
     tension = np.array([math.inf, *inner, -ultimate])
     spiral = isinstance(section.ties, Spiral) and not section.ties.hoops
     pressed_factor, cap = (0.75, 0.85) if spiral else (0.65, 0.80)
@@ -439,16 +441,16 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
     axes = _axes(section, ultimate, count, [0.0, steel.fy / steel.es])
     fixed = (1.0 - plateau / ultimate) * depth
 
-    def strains(axis: float) -> Callable[[Array], Array]:
-        face = ultimate if axis <= depth else plateau * axis / (axis - fixed)
-        return lambda y: face * (1.0 - (y + half) / axis)
+    def strains(axis: Array, y: Array) -> Array:
+        beyond = plateau * axis / np.where(axis > depth, axis - fixed, axis)
+        face = np.where(axis <= depth, ultimate, beyond)
+        return np.asarray(face * (1.0 - (y + half) / axis))
 
     curves = []
     for concrete_factor, steel_factor in ((1.0, 1.0), (1.0 / 1.5, 1.0 / 1.15)):
         block = _Block(section, concrete_factor * strength * fc, share, steel_factor)
-        pulled, pressed = block.extremes(plateau)
-        curves.append(np.array([pulled, *(block.point(x, strains(x)) for x in axes), pressed]).T)
-    inner = [-strains(x)(np.array([outermost]))[0] for x in axes]
+        curves.append(block.whole_curve(axes, strains, plateau))
+    inner = -strains(axes, np.array(outermost))
     tension = np.array([math.inf, *inner, -plateau])
     axis = np.concatenate(([0.0], axes, [math.inf]))
     (load, moment), (design_load, design_moment) = curves
