@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from rbsdem.model.column import Column
 from rbsdem.model.materials import Bars, Concrete, Layout, Spiral, Steel, Ties
@@ -14,7 +15,7 @@ from rbsdem.section.columns import column
 from rbsdem.section.frame import Frame
 
 
-def house(storeys: int = 4, bays: int = 2) -> Frame:
+def house(storeys: int = 4, bays: int = 2, **changes: Any) -> Frame:
     """Return a frame of a dwelling house, drawn by its sections.
 
     Storeys of 3.2 m and bays of 5.6 m; columns 400 x 400 mm with 8 bars of 18, beams 300 x 500 mm
@@ -25,6 +26,8 @@ def house(storeys: int = 4, bays: int = 2) -> Frame:
     ----------
     storeys, bays : int, optional
         Their numbers.
+    **changes
+        Other arguments of `Frame.grid`, as ``infills=``, ``walls=`` or ``beams=``.
     """
     concrete, bars = Concrete(25e6), Steel(450e6, 600e6)
     ties = Ties(0.008, 0.100, Steel(400e6))
@@ -35,11 +38,12 @@ def house(storeys: int = 4, bays: int = 2) -> Frame:
         0.30, 0.50, concrete, top=Bars(5, 0.016), bottom=Bars(3, 0.016), steel=bars, ties=ties,
         cover=0.03,
     )  # fmt: skip
-    return Frame.grid(
-        [3.2] * storeys, [5.6] * bays, columns=upright, beams=beam,
-        dead_load=18e3, live_load=8e3, live_share=0.3, node_load=25e3, self_weight=True,
-        mass="from_loads", kinematics="pdelta", damping=0.05, pattern="modal",
-    )  # fmt: skip
+    given: dict[str, Any] = {
+        "columns": upright, "beams": beam, "dead_load": 18e3, "live_load": 8e3, "live_share": 0.3,
+        "node_load": 25e3, "self_weight": True, "mass": "from_loads", "kinematics": "pdelta",
+        "damping": 0.05, "pattern": "modal",
+    }  # fmt: skip
+    return Frame.grid([3.2] * storeys, [5.6] * bays, **given | changes)
 
 
 def portal() -> Frame:

@@ -42,6 +42,9 @@ TWELVE_BARS = rbsdem.CircularSection(
     spiral=rbsdem.Spiral(0.01, 0.08, MILD),
     cover=0.03,
 )
+#: Sections of the ready house: 400 x 400 mm with 8 bars of 18 mm; 300 x 500 mm with rows of bars.
+HOUSE = rbsdem.examples.house(1, 1).drawing
+UPRIGHT, BEAM = HOUSE.columns[0, 0], HOUSE.beams[0, 0]
 #: SECTION in a column of 1.6 m as a row of the table of tests.
 SPECIMEN = peer.Specimen(
     name="Square",

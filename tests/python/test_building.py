@@ -8,20 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pandas
 import pytest
+from samples import BEAM as B
+from samples import UPRIGHT as C
 from test_invariants_frames import free, moment_size, off_balance
 
 import rbsdem
 from rbsdem.frames import TeeSection
 from rbsdem.run.case import case_of_text
 
-STEEL, HOOP = rbsdem.Steel(450e6, 600e6), rbsdem.Steel(400e6)
-TIES = rbsdem.Ties(0.008, 0.15, HOOP)
-C = rbsdem.RectangularSection(
-    0.4, 0.4, rbsdem.Concrete(25e6), layout=rbsdem.Layout(8, 0.018, STEEL), ties=TIES, cover=0.03
-)
-B = rbsdem.RectangularSection(
-    0.3, 0.5, rbsdem.Concrete(25e6), bars=[(0.2, 10e-4, STEEL), (-0.2, 6e-4, STEEL)],
-    bar_diameter=0.018, ties=TIES, cover=0.03,
+STEEL, TIES = B.steel, B.ties
+#: The beam with a slab.
+TEE = TeeSection(
+    0.3, 0.5, B.concrete, top=B.top, bottom=B.bottom, steel=STEEL, ties=TIES, cover=0.03,
+    flange_width=1.0, flange_thickness=0.12,
 )  # fmt: skip
 LOADING = "&loading drive = 'displacement', values = 0.01 /\n"
 MORE = {"dead_load": 20e3, "live_load": 10e3, "kinematics": "pdelta"}
@@ -96,10 +95,7 @@ def test_masses_from_loads():
 
 def test_rigid_ends_by_strength():
     # Weak columns between strong beams: the beams are rigid in the nodes, and the other way round.
-    strong = rbsdem.RectangularSection(
-        0.6, 0.6, rbsdem.Concrete(25e6), layout=rbsdem.Layout(12, 0.025, STEEL), ties=TIES,
-        cover=0.03,
-    )  # fmt: skip
+    strong = replace(C, width=0.6, depth=0.6, layout=rbsdem.Layout(12, 0.025, STEEL))
     weak = rbsdem.Frame.grid([3.2] * 2, [5.6], columns=C, beams=strong, dead_load=20e3)
     assert weak.beams[1, 1].rigid_end == (0.2, 0.2)
     assert weak.columns[1, 2].rigid_end == (0.0, 0.0)
@@ -112,10 +108,7 @@ def test_rigid_ends_by_strength():
 
 
 def test_unlike_halves():
-    light = rbsdem.RectangularSection(
-        0.3, 0.5, rbsdem.Concrete(25e6), bars=[(0.2, 5e-4, STEEL), (-0.2, 6e-4, STEEL)],
-        bar_diameter=0.018, ties=TIES, cover=0.03,
-    )  # fmt: skip
+    light = replace(B, top=rbsdem.Bars(3, 0.016))
     pair = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=(B, light), **MORE)
     mirror = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=(light, B), **MORE)
     one = rbsdem.pushover(pair, drift=0.01, points=10)
@@ -179,12 +172,8 @@ def test_nodes_without_hoops_lose_their_strength_in_cycles(storeys, bays, load):
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 def test_a_tee_hogs_with_its_slab_in_tension():
-    tee = TeeSection(
-        0.3, 0.5, rbsdem.Concrete(25e6), bars=[(0.2, 10e-4, STEEL), (-0.2, 6e-4, STEEL)],
-        bar_diameter=0.018, ties=TIES, cover=0.03, flange_width=1.0, flange_thickness=0.12,
-    )  # fmt: skip
-    frame = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=tee, **MORE)
-    assert frame.kinds["B-1-1"].sections == (tee, tee)
+    frame = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=TEE, **MORE)
+    assert frame.kinds["B-1-1"].sections == (TEE, TEE)
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
@@ -218,19 +207,14 @@ def sections_of(frame):
     [
         {"ends": 0.5, "node_load": 30e3, "self_weight": True, "mass": "from_loads"},
         {"panel_hoops": TIES},
-        {"panel_hoops": replace(TIES, spacing=0.1), "damping": 0.05, "floor_mass": 30e3},
+        {"panel_hoops": replace(TIES, spacing=0.15), "damping": 0.05, "floor_mass": 30e3},
         {"panel_hoops": "none", "base": "pinned", "diaphragm": True},
     ],
     ids=["ends", "hoops of a section", "other hoops", "no hoops"],
 )
 def test_a_drawn_frame_comes_back_from_a_case_file_with_its_sections(more):
     kind = rbsdem.FrameMember(3e10, 0.2, 4e-3, rigid_end=0.25, name="section-1")
-    other = replace(B, bars=[(0.2, 8e-4, STEEL), (-0.2, 8e-4, STEEL)])
-    if "panel_hoops" not in more:
-        other = TeeSection(
-            0.3, 0.5, rbsdem.Concrete(25e6), bars=B.bars, bar_diameter=0.018, ties=TIES,
-            cover=0.03, flange_width=1.0, flange_thickness=0.12,
-        )  # fmt: skip
+    other = replace(B, bottom=B.top) if "panel_hoops" in more else TEE
     frame = rbsdem.Frame.grid(
         [3.2, 3.0, 3.0], [5.6, 4.0], columns={(0, 0): C, (2, 3): kind},
         beams={(1, 0): (B, other), (2, 0): B, (2, 3): None}, **MORE, **more,

@@ -4,22 +4,13 @@ import math
 from dataclasses import replace
 
 import pytest
+from samples import BEAM
+from samples import UPRIGHT as COLUMN
 
 import rbsdem
 from rbsdem.errors import AccuracyWarning
 from rbsdem.section.columns import plastic_moments
 from rbsdem.section.spans import beam_spans, line_spans
-
-STEEL = rbsdem.Steel(450e6, 560e6)
-CONCRETE = rbsdem.Concrete(25e6)
-TIES = rbsdem.Ties(0.008, 0.15, STEEL)
-BEAM = rbsdem.RectangularSection(
-    0.3, 0.5, CONCRETE, bars=[(0.2, 10e-4, STEEL), (-0.2, 6e-4, STEEL)], bar_diameter=0.018,
-    ties=TIES, cover=0.03,
-)  # fmt: skip
-COLUMN = rbsdem.RectangularSection(
-    0.45, 0.45, CONCRETE, layout=rbsdem.Layout(8, 0.02, STEEL), ties=TIES, cover=0.03
-)
 
 
 def test_ends_of_a_beam_by_hand():
@@ -73,11 +64,9 @@ def test_a_loaded_beam_is_stronger_where_it_hogs():
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")  # deeper than the tests
 def test_a_wall_cut_at_its_floors_is_no_stronger():
-    wall = rbsdem.RectangularSection(
-        0.2, 1.5, CONCRETE, layout=rbsdem.Layout(12, 0.016, STEEL), ties=TIES, cover=0.03
-    )
+    wall = replace(COLUMN, width=0.2, depth=1.5, layout=rbsdem.Layout(12, 0.016, BEAM.steel))
     more = {"floor_mass": 20e3, "beam_load": 10e3, "ends": 0.0, "pattern": "uniform"}
-    weak = replace(BEAM, bars=[(0.2, 2e-4, STEEL), (-0.2, 2e-4, STEEL)])
+    weak = replace(BEAM, top=rbsdem.Bars(2, 0.012), bottom=rbsdem.Bars(2, 0.012))
     frame = rbsdem.Frame.grid([3.0] * 4, [5.0], columns=wall, beams=weak, **more)
     cut = frame.kinds["C-1-1"]
     # A cantilever of 12 m has M/V 7.5 m under a uniform load; the beams bend it back a little.

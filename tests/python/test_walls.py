@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from samples import BEAM, UPRIGHT
 
 import rbsdem
 from rbsdem import Boundary, Concrete, Curtain, Hoops, RectangularSection, Steel, WallSection
@@ -286,20 +287,10 @@ def test_a_wall_may_stand_behind_a_frame_at_one_place():
     assert moved(0.0) == pytest.approx(moved(5.0), rel=1e-12)
 
 
-COLUMN = RectangularSection(
-    0.5, 0.5, Concrete(30e6), layout=rbsdem.Layout(12, 0.02, BARS),
-    ties=rbsdem.Ties(0.01, 0.1, MESH, legs=4), cover=0.03,
-)  # fmt: skip
-BEAM = RectangularSection(
-    0.3, 0.5, Concrete(30e6), top=rbsdem.Bars(4, 0.02), bottom=rbsdem.Bars(3, 0.02), steel=BARS,
-    ties=rbsdem.Ties(0.008, 0.15, MESH), cover=0.03,
-)  # fmt: skip
-
-
 def building(**changes) -> rbsdem.Frame:
     """Return three storeys with a wall on the second of three lines."""
     given = {"walls": {2: wall()}, "dead_load": 20e3, "mass": "from_loads"}
-    given |= {"columns": COLUMN, "beams": BEAM} | changes
+    given |= {"columns": UPRIGHT, "beams": BEAM} | changes
     return rbsdem.Frame.grid([3.0] * 3, [5.0, 5.0], **given)
 
 
@@ -323,7 +314,7 @@ def test_beams_reach_the_faces_of_a_wall_line():
 
 def test_a_wall_line_has_springs_of_its_own_span():
     """The wall alone, without beams: M/V of a triangular load on three storeys, 7/9 of 9 m."""
-    frame = rbsdem.Frame.grid([3.0] * 3, walls={1: wall()}, columns=COLUMN, node_load=2e5)
+    frame = rbsdem.Frame.grid([3.0] * 3, walls={1: wall()}, columns=UPRIGHT, node_load=2e5)
     (found, _), _ = frame.kinds["C-1-1"].shear_spans
     assert found == pytest.approx(7.0, abs=0.05 * 3.0)
     stated = building(wall_spans={2: 5.5})
