@@ -44,16 +44,16 @@ html_css_files = ["wide.css"]
 
 
 def _split_names(*event) -> None:
-    """Make two entries of `a, b : type`, which napoleon does not take among attributes."""
+    """Make entries of `a, b : type`, which napoleon does not take among attributes."""
     lines = event[-1]
     out: list[str] = []
     while lines:
-        entry = re.fullmatch(r"(\w+), (\w+) : (.*)", lines[0])
+        entry = re.fullmatch(r"(\w+(?:, \w+)+) : (.*)", lines[0])
         block = [lines.pop(0)]
         while entry and lines and lines[0].startswith(" "):
             block.append(lines.pop(0))
-        for name in entry.groups()[:2] if entry else ():
-            out += [f"{name} : {entry[3]}", *block[1:]]
+        for name in entry[1].split(", ") if entry else ():
+            out += [f"{name} : {entry[2]}", *block[1:]]
         if not entry:
             out += block
     lines[:] = out

@@ -41,6 +41,11 @@ def test_the_surface_is_small_and_in_order():
     names: dict[str, object] = {}
     exec("from rbsdem import *", names)
     assert set(names) - {"__builtins__"} == set(rbsdem.__all__)
+    reference = "".join(page.read_text() for page in (REPOSITORY / "docs").glob("*.md"))
+    assert ".. automodule:: rbsdem.plot\n   :members:\n   :imported-members:\n" in reference
+    figures = {name for name, thing in vars(rbsdem.plot).items() if callable(thing)}
+    for name in set(offered) - figures:
+        assert name.isupper() or re.search(rf"[ .]{name}(\.\w+)?$", reference, re.MULTILINE), name
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 import rbsdem
 from rbsdem.cli import main
-from rbsdem.methods.verification import PROBLEMS, Comparison, Problem
+from rbsdem.methods.verification import PROBLEMS, PrintedValue, Problem
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=[one.name for one in PROBLEMS])
@@ -28,9 +28,9 @@ def test_a_unit_of_the_last_digit_counts_as_inside(printed, least, most):
     for value, inside in ((0.999, True), (1.001, False)):
         for end in (least, most):
             value_there = float(printed) + value * (end - float(printed))
-            one = Comparison(problem, printed, value_there)
+            one = PrintedValue(problem, printed, value_there)
             assert one.inside == one.holds == inside
-            assert Comparison(replace(problem, remark="why", within=0.5), printed, end).holds
+            assert PrintedValue(replace(problem, remark="why", within=0.5), printed, end).holds
 
 
 def test_command(capsys, tmp_path):

@@ -716,7 +716,7 @@ PROBLEMS: list[Problem] = [
 
 
 @dataclass(frozen=True)
-class Comparison:
+class PrintedValue:
     """A printed number beside that of the program.
 
     Attributes
@@ -763,11 +763,11 @@ class Verification(Tabular):
 
     Attributes
     ----------
-    comparisons : tuple of rbsdem.methods.verification.Comparison
+    comparisons : tuple of rbsdem.methods.verification.PrintedValue
         In the order of the problems.
     """
 
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[PrintedValue, ...]
 
     @property
     def holds(self) -> bool:
@@ -776,7 +776,7 @@ class Verification(Tabular):
 
     def worst(self) -> Verification:
         """Return the number of each problem that differs most, in units of its last digit."""
-        found: dict[Problem, Comparison] = {}
+        found: dict[Problem, PrintedValue] = {}
         for one in self.comparisons:
             if one.problem not in found or abs(one.units) > abs(found[one.problem].units):
                 found[one.problem] = one
@@ -807,13 +807,13 @@ class Verification(Tabular):
         )
 
 
-def _shown(one: Comparison) -> str:
+def _shown(one: PrintedValue) -> str:
     """Return the number with one digit more than is printed."""
     digits = one.printed.lower().partition("e")[0].lstrip("-").replace(".", "").lstrip("0")
     return f"{one.value:#.{max(len(digits), 1) + 1}g}".rstrip(".")
 
 
-def _verdict(one: Comparison) -> str:
+def _verdict(one: PrintedValue) -> str:
     if one.inside:
         return "printed digits"
     return one.problem.remark if one.holds else "wrong"
@@ -852,7 +852,7 @@ def verify(problems: Sequence[str] | None = None) -> Verification:
             values = np.ravel(problem.solve()).astype(float).tolist()
         if len(values) != len(printed) or not all(map(math.isfinite, values)):
             raise AssertionError(f"{problem.name}: {values} for {problem.printed}")
-        found += [Comparison(problem, *pair) for pair in zip(printed, values, strict=True)]
+        found += [PrintedValue(problem, *pair) for pair in zip(printed, values, strict=True)]
     return Verification(tuple(found))
 
 
