@@ -654,6 +654,14 @@ def report(found: dict[str, Answers], folder: Path, entries: bool) -> None:
                 line += " stopped" if p.stopped else ""
             print(line)
     portal_table(found)
+    names = {"frm_h": "height", "col_h": "depth of columns"}
+    for key, name in names.items():
+        rows = [
+            r for r in rows_of(folder / "portals.csv")[1:] if int(r["entry_id"]) not in DOUBTFUL
+        ]
+        size = 1e-3 * np.quantile([float(row[key]) for row in rows], (0, 0.5, 1))
+        print("{} of the portals: {:.2f} to {:.2f} m, median {:.2f}".format(
+            name, *size[[0, 2, 1]]))  # fmt: skip
     push_table({who: one.vecchio_emara for who, one in found.items()})
     loop_table(found, folder)
     wear_tables(found, folder)

@@ -247,7 +247,11 @@ def main() -> None:
     given = parser.parse_args()
     warnings.simplefilter("ignore")
     _begin(given.folder)
-    specimens = [case.specimen for case in fit_model.load(given.folder)]
+    cases = fit_model.load(given.folder)
+    specimens = [case.specimen for case in cases]
+    depths = np.quantile([case.column.drawing.section.depth for case in cases], (0, 0.05, 0.95, 1))
+    print("columns {:.2f} to {:.2f} ({:.2f} to {:.2f}) m deep: 90 % (all)\n".format(
+        *depths[[1, 2, 0, 3]]))  # fmt: skip
     found = {}
     for name, model in SOURCES.items():
         rows = peer.predict(specimens, model=model)

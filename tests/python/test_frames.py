@@ -1640,8 +1640,14 @@ def test_an_ida_tells_what_is_not_known_of_axial_failure():
         "levels": np.geomspace(2.0, 60.0, 14), "method": "newmark", "dt": 0.01,
         "intensity": "pga", "measures": ["peak_storey_drift"],
     }  # fmt: skip
-    ida = rbsdem.ida(bent(), records, axial_failure=True, **options)
-    alone = rbsdem.ida(bent(), records, **options)
+    ida = rbsdem.ida(bent(), records, **options)
+    alone = rbsdem.ida(bent(), records, axial_failure=False, **options)
+    assert alone.at_ends is None
+    assert ida.runs.measures.keys() == alone.runs.measures.keys()
+    # Where no shear spring yields nothing can be lost, and nothing is run twice.
+    weak = options | {"levels": [0.1, 0.2]}
+    assert rbsdem.ida(bent(), records[:1], **weak).at_ends is None
+    assert rbsdem.ida(bent(), records[:1], axial_failure=True, **weak).at_ends is not None
     early, late = ida.at_ends
     assert (early.collapse_intensity <= ida.collapse_intensity).all()
     assert (ida.collapse_intensity <= late.collapse_intensity).all()

@@ -16,7 +16,6 @@ from rbsdem.frames import FrameNode
 from rbsdem.run.bands import scatter_of_tests
 from rbsdem.run.walls import failure_of
 from rbsdem.section import hinge
-from rbsdem.section.criteria import criteria
 from rbsdem.section.parameters import parameters
 
 pytestmark = [
@@ -374,9 +373,21 @@ def test_a_wall_in_a_frame_has_the_limit_states_of_one_that_stands_alone():
     assert names <= set(drifts[1])
     for name in names:
         assert drifts[1][name] == pytest.approx(drifts[0][name], rel=5e-3), name
-    # Runs without rows, as those of ensembles, look at the bars alone.
-    watched = {each.name for each in criteria(cut(wall(), 1)) if each.rotation == 1.0}
-    assert {"first_yield", "web_yield", "bar_buckling", "bar_fracture"} <= watched
+
+
+@pytest.mark.filterwarnings("ignore:member .* at the largest shear force")
+def test_an_ensemble_watches_the_strains_of_walls_in_every_step():
+    """Bars, end face and edge of the core: as the rows of one run, between which they lie."""
+    frame = building(kinematics="pdelta", damping=0.03)
+    time = np.arange(0.0, 4.0, 0.01)
+    ground = rbsdem.GroundMotion(12.0 * np.sin(9.0 * time), 0.01, name="sine")
+    settings = {"method": "newmark", "dt": 0.01}
+    one = rbsdem.time_history(frame, time, ground_acceleration=ground.acceleration, **settings)
+    names = ("first_yield", "web_yield", "crushing", "spalling", "bar_buckling")
+    states = one.limit_states()
+    found = rbsdem.ensemble(frame, ground, measures=names, collapse_drift=None, **settings)
+    for name in names:
+        assert found.measures[name][0] == pytest.approx(states[name].time, abs=1e-9), name
 
 
 def test_drift_capacity_of_a_wall_by_hand():

@@ -594,8 +594,8 @@ class WithFragility(Tabular, ABC):
         beta : float, optional
             Standard deviation of the logarithm of the capacity, stated where the runs do not
             determine it; the median alone is then fitted. Otherwise that of the records; of an IDA
-            with `axial_failure` with that of the drift at axial failure, by the medians at both
-            ends of its interval.
+            of frames that may lose axial load with that of the drift at which they do, by the
+            medians at both ends of its interval.
 
         Raises
         ------
@@ -617,7 +617,10 @@ class WithFragility(Tabular, ABC):
             try:
                 thetas.append(fit_fragility(name, end._data(*state), label, curve.beta).theta)
             except InputError as error:
-                raise InputError(f"axial failure at {factor:g} times its drift: {error}") from error
+                raise InputError(
+                    f"axial failure at {factor:g} times its drift: {error}; beta= states the "
+                    "dispersion, and ida(axial_failure=False) leaves this end out"
+                ) from error
         # Eight of ten drifts lie between the ends.
         added = abs(math.log(thetas[1] / thetas[0])) / (2.0 * _NINETY)
         total = math.hypot(curve.beta, added)

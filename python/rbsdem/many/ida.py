@@ -350,7 +350,7 @@ def ida(
     *,
     levels: ArrayLike | Literal["search"] | CollapseSearch = "search",
     refine: Sequence[str] | None = None,
-    axial_failure: bool = False,
+    axial_failure: bool | None = None,
     **options: Unpack[RunOptions],
 ) -> IDA:
     """Run an incremental dynamic analysis: every motion at growing intensity.
@@ -370,8 +370,9 @@ def ida(
         if that is a measure; ``[]`` leaves all to the runs made for the collapse.
     axial_failure : bool, optional
         Whether frames, whose members lose their axial load at a drift that is known to a factor,
-        are run at both ends of its interval too (`rbsdem.Frame.with_axial_failure`). This takes
-        three times the time; fragilities then have the dispersion that it makes.
+        are run at both ends of its interval too (`rbsdem.Frame.with_axial_failure`); by default
+        where a member that can lose it may have failed in shear in some run. This takes three
+        times the time; fragilities then have the dispersion that it makes.
     **options
         See `rbsdem.many.runs.RunOptions`: intensity, period, damping, collapse_drift, measures,
         initial, jobs, progress, store, shard, client; and the settings of the method, see
@@ -389,12 +390,14 @@ def ida(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    ends: list[IDA] = []
-    if _arguments.boolean(axial_failure, "ida: axial_failure"):
-        frames = columns_by_name(column)
-        for factor in AXIAL_FAILURE_FACTORS:
-            changed: Any = {name: _failing_at(factor, one) for name, one in frames.items()}
-            ends.append(ida(changed, motions, levels=levels, refine=refine, **options))
+    asked = axial_failure
+    failing = {} if asked is False else _that_lose_their_load(columns_by_name(column))
+    if asked is not None and _arguments.boolean(asked, "ida: axial_failure") and not failing:
+        raise InputError(
+            "ida: axial_failure = True: no member of a frame has a failure_drift; leave "
+            "axial_failure out"
+        )
+    again: dict[str, Any] = {"levels": levels, "refine": refine, "axial_failure": False} | options
     if "measures" in options:
         options["measures"] = _with_drift(options["measures"], column)
     search = _search_of(levels)
@@ -403,6 +406,8 @@ def ida(
     named = {name for name in work.names if isinstance(name, str)}
     refined = _refined(refine, named)
     work.names = [*work.names, *(name for name in refined if name not in named)]
+    watched = bool(failing) and asked is None and _SHEARED not in work.names
+    work.names += [_SHEARED] * watched
     work.check_unloaded_state("ida")
     at = np.empty(_EXPECTED) if search is not None else checked_levels(levels)
     wanted = _arguments.boolean(work.settings["progress"], "progress")
@@ -417,13 +422,39 @@ def ida(
     own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
     about = {n: v for n, v in own.items() if v is not None and v is not False}
     about["levels"] = "search" if search is not None else "given"
-    return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin, *ends)
+    runs = work.finish()
+    needed = bool(failing) and (asked is True or _may_fail(runs, failing))
+    if watched:
+        del runs.measures[_SHEARED]
+    ends: list[Any] = [
+        {name: failing[name].with_axial_failure(factor) if name in failing else one
+         for name, one in runs.columns.items()}
+        for factor in (AXIAL_FAILURE_FACTORS if needed else ())
+    ]  # fmt: skip
+    told = [ida(end, motions, **again) for end in ends]
+    return IDA(runs, lower, upper, about, time.perf_counter() - begin, *told)
 
 
-def _failing_at(factor: float, frame: Structure) -> Frame:
-    """Return a frame whose members lose their axial load at a factor of the drift."""
-    what = "ida: axial_failure = True: a column", Frame, "leave axial_failure out"
-    return _arguments.instance(frame, *what).with_axial_failure(factor)
+#: Measure of a run in which a shear spring yielded.
+_SHEARED = "shear_yield"
+
+
+def _that_lose_their_load(structures: Mapping[str | int, Structure]) -> dict[str | int, Frame]:
+    """Return the frames with a member that loses its axial load after a failure in shear."""
+    return {
+        name: one
+        for name, one in structures.items()
+        if isinstance(one, Frame)
+        and any(kind.failure_drift is not None for kind in one.named_kinds.values())
+    }
+
+
+def _may_fail(runs: Runs, frames: Mapping[str | int, Frame]) -> bool:
+    """Return whether members may have failed in shear: by a spring, or at a drift."""
+    places = [at for at, name in enumerate(runs.columns) if name in frames]
+    sheared = np.isfinite(runs.measures[_SHEARED]) & np.isin(runs.column, places)
+    kinds = (kind for one in frames.values() for kind in one.named_kinds.values())
+    return bool(sheared.any()) or any(kind.shear_drift is not None for kind in kinds)
 
 
 def _search_of(levels: Any) -> CollapseSearch | None:

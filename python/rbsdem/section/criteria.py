@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -73,7 +73,8 @@ class Criterion:
     source : str
         Where the threshold comes from.
     slip, rotation, opening : float
-        Factors of the slip, of the rotation with that at rest, and of the opening.
+        Factors of the slip, of the rotation with that at rest, and of the opening; of a joint of
+        layers in a frame those of a layer (rotation) and of the next one (slip).
     """
 
     name: str
@@ -144,34 +145,38 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
 
 
 def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
-    """Yield where layers yield in tension; they are numbered behind the rotational springs.
+    """Yield what is watched in joints of layers, which are numbered behind rotational springs.
 
-    Of walls, what strains of their bars reach.
+    Sections stay plane: of equal layers the outermost ones are stretched most, and where no layer
+    is (the slip is that of the next one) two of them give the strain.
     """
     for own in springs:
         made = frame.joints.get(own)
         if made is None:
             continue
-        kind = frame.kinds[own.member]
-        if (drawn := _drawn_wall(kind, own.position)) is not None:
-            for at, _, over, strains in _outer_bars(*drawn, made):
-                for name, strain in strains.items():
-                    source = f"{_OF_BARS[name]} of {own.member}"
-                    yield Criterion(name, number + at + 1, strain * over, source, rotation=1.0)
-            number += len(made.layers)
-            continue
-        places: dict[Spring, list[float]] = {}
-        for y, layer in made.layers:
-            places.setdefault(layer, []).append(y)
-        for y, layer in made.layers:
-            number += 1
-            # Plane sections: of equal layers the outermost ones are stretched most.
-            if y not in (min(places[layer]), max(places[layer])):
-                continue
-            for mark in layer.landmarks():
-                if mark.name == "yield" and mark.side > 0:
-                    source = f"{mark.source} of a {type(layer).__name__} layer of {own.member}"
-                    yield Criterion("first_yield", number, mark.deformation, source, rotation=1.0)
+        alike: dict[tuple[str, float, bool], list[Criterion]] = {}
+        for each in joint_criteria(frame.kinds[own.member], own.position, made):
+            key = each.name, each.threshold / abs(each.opening), each.opening > 0.0
+            alike.setdefault(key, []).append(each)
+        places = np.array([y for y, _ in made.layers])
+        widest = int(np.argmax(np.abs(np.diff(places)))) if places.size > 1 else 0
+        for equal in alike.values():
+            by_place = sorted(equal, key=lambda each: each.rotation / each.opening)
+            for each in dict.fromkeys((by_place[0], by_place[-1])):
+                y = each.rotation / each.opening
+                at, share = int(np.argmin(np.abs(places - y))), 0.0
+                if not math.isclose(places[at], y, rel_tol=1e-9, abs_tol=1e-9):
+                    at = widest
+                    share = (y - places[at]) / (places[at + 1] - places[at])
+                yield replace(
+                    each,
+                    joint=number + at + 1,
+                    source=f"{each.source} of {own.member}",
+                    slip=each.opening * share,
+                    rotation=each.opening * (1.0 - share),
+                    opening=0.0,
+                )
+        number += places.size
 
 
 def _drawn_wall(kind: FrameMember, position: float) -> tuple[WallSection, Gauge] | None:
@@ -338,7 +343,7 @@ def _of_bars(
 ) -> Iterator[Criterion]:
     """Yield strains of the bars of a hinge that knows its drawing."""
     spring, gauge = layers
-    for _, y, over, strains in _outer_bars(section, gauge, spring, buckles):
+    for y, over, strains in _outer_bars(section, gauge, spring, buckles):
         lever = {"rotation": y / over, "opening": 1.0 / over}
         for name, at in strains.items():
             yield Criterion(name, joint, float(at), _OF_BARS[name], **lever)
@@ -346,31 +351,29 @@ def _of_bars(
 
 def _outer_bars(
     section: Section, gauge: Gauge, spring: Layered, buckles: float = math.inf
-) -> Iterator[tuple[int, float, float, dict[str, float]]]:
-    """Yield layer, place, length and strains at the limit states of the outermost of equal bars.
+) -> Iterator[tuple[float, float, dict[str, float]]]:
+    """Yield place, length and strains at the limit states of the outermost of equal bars.
 
     Bars of columns buckle at the strain that is given, those of walls at that of their layers.
     """
-    outer: dict[tuple[float, ...], list[tuple[float, int]]] = {}
+    outer: dict[tuple[float, ...], list[float]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
-    layers_of_bars = [
-        (at, y, layer, over) for at, ((y, layer), part, over) in enumerate(rows) if part == "bar"
-    ]
+    layers_of_bars = [(y, layer, over) for (y, layer), part, over in rows if part == "bar"]
     # They are in the order of the bars: at one height there may be bars of several steels.
-    for (at, y, layer, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
+    for (y, layer, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         in_web, bows = 0.0, buckles
         if isinstance(section, WallSection):
             in_web = float(not section.in_boundary(y))
             bows = (getattr(layer, "d_buckle", None) or math.inf) / over
         key = steel.fy / steel.es, steel.eps_u, bows, in_web, over
-        outer.setdefault(key, []).append((y, at))
+        outer.setdefault(key, []).append(y)
     for (yields, breaks, bows, in_web, over), places in outer.items():
         strains = {"bar_fracture": breaks, "bar_buckling": bows}
         strains["web_yield" if in_web else "first_yield"] = yields
         known = {name: strain for name, strain in strains.items() if math.isfinite(strain)}
         # Plane sections: of equal bars the outermost ones are stretched most.
-        for y, at in dict.fromkeys((max(places), min(places))):
-            yield at, y, over, known
+        for y in dict.fromkeys((max(places), min(places))):
+            yield y, over, known
 
 
 def buckling_strain(section: Section, column: Column) -> float:

@@ -22,7 +22,8 @@ module rbs_solve_time_monitor
       !> Factors of slip, of rotation and of opening; where there is one of the opening, rotations count with
       !> those at rest
       real(wp) :: slip = 0.0_wp, rotation = 0.0_wp, opening = 0.0_wp, threshold = huge(1.0_wp)
-      !> The springs of the joint that slip and rotate, which `begin` finds
+      !> The springs of the joint that slip and rotate, which `begin` finds; of a joint of layers in a frame
+      !> the next layer and the layer
       integer :: slips = 0, turns = 0
    end type watch_type
 
@@ -44,7 +45,7 @@ module rbs_solve_time_monitor
       !> openings in the watches (watches)
       real(wp) :: clock = 0.0_wp, displacement = 0.0_wp
       real(wp), allocatable :: q(:), openings(:)
-      !> Whether openings are still watched
+      !> Whether openings, or two deformations at once, are still watched
       logical, private :: opens = .false.
       !> Absolute rotations of the bodies at both ends of a step, and their rates (n, 4)
       real(wp), allocatable, private :: rotation(:, :)
@@ -81,7 +82,7 @@ contains
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is monitored
       logical, intent(in) :: floor
-      integer :: i, m
+      integer :: i, m, number
 
       if (is_given(collapse_drift)) then
          if (motion%structure%by_storeys) then
@@ -100,10 +101,11 @@ contains
          ! A kind that the structure does not have has the factor 0, with any spring.
          self%watch(i)%slips = max(motion%structure%spring_of(shear, self%watch(i)%joint), 1)
          self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
-         ! Behind the flexural springs come layers of joints.
+         ! Behind the flexural springs come layers of joints, of which two give the strains of a section.
          if (self%watch(i)%turns == 0) then
-            self%watch(i)%turns = max(motion%structure%spring_of(layer, self%watch(i)%joint - &
-                                                   count(motion%structure%location%kind == flexure)), 1)
+            number = self%watch(i)%joint - count(motion%structure%location%kind == flexure)
+            self%watch(i)%turns = max(motion%structure%spring_of(layer, number), 1)
+            self%watch(i)%slips = max(motion%structure%spring_of(layer, number + 1), 1)
          end if
       end do
       self%peaks_type = peaks_type()
@@ -387,7 +389,7 @@ contains
          associate (watch => self%watch(i))
             if (self%reached(watch%state) < huge(1.0_wp)) cycle
             self%watching = .true.
-            if (abs(watch%opening) > 0.0_wp) then
+            if (abs(watch%opening) > 0.0_wp .or. abs(watch%slip*watch%rotation) > 0.0_wp) then
                self%opens = .true.
             else
                associate (slips => watch%slips, turns => watch%turns)
