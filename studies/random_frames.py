@@ -1,116 +1,216 @@
 """Random frames of all rules: relations that hold for any of them, and how push-overs end.
 
-    python studies/random_frames.py [CASES] [SEED] [RELATION ...]
+    python studies/random_frames.py [--cases N] [--seed S] [--kind KIND ...] [--seconds T]
 
-Each relation of `tests/python/test_invariants_frames.py` is tried in CASES cases (by default
-10 000). It prints how many of them say something, the median and the largest distance, the bar,
-and the cases above it. Then CASES/20 frames of each family of springs
-are pushed to a drift of 5 %: they get there, or end with a message that names the member. Where the
-LAPACK is OpenBLAS, as many are cycled with each of three kernels, whose sums have other round-off:
-`python studies/random_frames.py CASES SEED kernels` does that alone.
+KIND is a relation of `tests/python/test_invariants_frames.py` or a set of work:
+
+- `paths`: cycles in another order of nodes and members, in a mirror, with targets larger by a last
+  bit, and in units of powers of two;
+- `buildings`: cycles of drawn buildings in another order, in a mirror and with such targets;
+- `records`: undamped records, of which the energy that snaps of springs put in is compared;
+- `relations`: all relations;
+- `pushes`: push-overs to a drift of 5 %, which get there or end with a message that names a member;
+- `kernels`: rows of cycles, for another kernel of OpenBLAS: run it with `--write FILE`, then with
+  another value of OPENBLAS_CORETYPE and `--against FILE`.
+
+It prints how many cases differ by more than the bar of their relation, with their numbers: `--kind
+RELATION --case NUMBER` runs one of them. A case that takes more than T seconds is named.
 """
 
 from __future__ import annotations
 
+import argparse
+import json
 import os
+import pickle
 import re
-import subprocess
+import resource
+import signal
 import sys
 import warnings
+import zlib
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
-CASES = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
-os.environ["RBSDEM_SEED"] = sys.argv[2] if len(sys.argv) > 2 else "0"
+
+SETS = {
+    "paths": (
+        "test_names_order_and_place", "test_mirror", "test_last_bit_of_targets",
+        "test_powers_of_two",
+    ),
+    "buildings": ("test_buildings_go_one_way",),
+    "records": ("test_snaps_set_energy_free",),
+    "relations": (),
+    "pushes": (),
+    "kernels": (),
+}  # fmt: skip
+
+
+def arguments() -> argparse.Namespace:
+    """Return what the command line asks for."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
+    parser.add_argument("--cases", type=int, default=100, metavar="N")
+    parser.add_argument("--seed", type=int, default=0, metavar="S")
+    parser.add_argument("--kind", nargs="+", default=["relations", "pushes"], metavar="KIND")
+    parser.add_argument("--case", type=int, metavar="NUMBER")
+    parser.add_argument("--seconds", type=int, default=20, metavar="T")
+    parser.add_argument("--write", type=Path, metavar="FILE")
+    parser.add_argument("--against", type=Path, metavar="FILE")
+    return parser.parse_args()
+
+
+ASKED = arguments()
+os.environ["RBSDEM_SEED"] = str(ASKED.seed)
 
 import test_invariants_frames  # noqa: E402, F401
-from relations import RELATIONS, SEED, Outcome, ended  # noqa: E402
-from strategies_frames import FAMILIES, drifts, frame  # noqa: E402
+from relations import RELATIONS, Discard, ended, replay  # noqa: E402
+from strategies_frames import FAMILIES, building, drifts, frame  # noqa: E402
 
 import rbsdem  # noqa: E402
 
 
-def tried(name: str, cases: int) -> None:
+class Late(Exception):  # noqa: N818
+    """A case takes longer than it may."""
+
+
+def capped(judge: Callable[[int], Any], case: int) -> Any:
+    """Return what a case comes to in a process of its own, which has so much processor time."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        resource.setrlimit(resource.RLIMIT_CPU, (ASKED.seconds, ASKED.seconds + 1))
+        try:
+            answer = judge(case)
+        except Discard as nothing:
+            answer = nothing
+        except Exception as error:  # with the number of the case
+            answer = f"{type(error).__name__}: {error}"
+        with os.fdopen(writing, "wb") as pipe:
+            pickle.dump(answer, pipe)
+        os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as pipe:
+        told = pipe.read()
+    end = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    if end == -signal.SIGXCPU:
+        raise Late
+    answer = pickle.loads(told) if told else f"the process ended with {end}"
+    if isinstance(answer, Discard):
+        raise answer
+    return answer
+
+
+def tried(name: str, cases: range) -> None:
     """Print what the cases of a relation come to."""
-    found = Outcome(RELATIONS[name].judge, RELATIONS[name].bar)
-    for case in range(cases):
-        found.take(case)
-    far = np.array(found.distances or [np.nan])
+    bar, distances, faults, late = RELATIONS[name].bar, [], [], []
+    for case in cases:
+        try:
+            distance = capped(lambda case: replay(name, case) or 0.0, case)
+        except Discard:
+            continue
+        except Late:
+            late.append(case)
+            continue
+        if isinstance(distance, float):
+            distances.append(distance)
+        if not (isinstance(distance, float) and distance <= bar):
+            faults.append(f"case {case}: {distance}")
+    far = np.array(distances or [np.nan])
     print(
-        f"{name.removeprefix('test_'):55}{far.size:7} of {cases}   median {np.median(far):.0e}   "
-        f"largest {far.max():.0e}   bar {found.bar:.0e}   above {len(found.faults)}"
+        f"{name.removeprefix('test_'):48}{len(cases):7} cases, {len(distances)} judged   "
+        f"median {np.median(far):.0e}   largest {far.max():.0e}   bar {bar:.0e}   "
+        f"above {len(faults)}   beyond {ASKED.seconds} s {len(late)}: {late}"
     )
-    for fault in found.faults[:20]:
+    for fault in faults[:50]:
         print("    ", fault[:200].replace("\n", " "), flush=True)
 
 
-def pushed(family: str, frames: int) -> None:
+def random_of(family: str, case: int) -> np.random.Generator:
+    """Return the numbers that a case of a family draws."""
+    return np.random.default_rng((zlib.crc32(family.encode()), ASKED.seed, case))
+
+
+def pushed(family: str, cases: range) -> None:
     """Print how push-overs of a family end; none does so silently, or without naming a member."""
-    rng = np.random.default_rng((SEED, list(FAMILIES).index(family)))
-    ends = Counter[str]()
-    for _ in range(frames):
-        run = rbsdem.pushover(frame(rng, family), drift=0.05)
+
+    def push(case: int) -> str:
+        try:
+            run = rbsdem.pushover(frame(random_of(family, case), family), drift=0.05)
+        except rbsdem.SolveError as error:
+            return f"raised: {error}"
         told = "" if run.summary["status"] == "completed" else run.summary["reason"]
         sound = np.isfinite(run.force).all() and run.summary["relative_energy_residual"] < 1e-9
         unnamed = told and not re.search(r"\b[CB]-\d+-\d+\b", told)
         text = re.sub(r"\b[CBN]-\d+-\d+\b", "M", re.split(r"; |\. ", told.split(": ", 1)[-1])[0])
-        text = text or "completed"
-        text = re.sub(r"-?\d[\d.e+-]*", "#", text)[:110]
-        silent = not (told or sound)
-        ends[text + ", silent" * silent + ", without a member" * bool(unnamed)] += 1
-    print(f"\n{frames} push-overs of springs of family '{family}' to a drift of 5 %")
-    for text, number in ends.most_common():
-        print(f"{number:6d}  {text}")
+        text = re.sub(r"-?\d[\d.e+-]*", "#", text or "completed")[:110]
+        return text + ", silent" * (not (told or sound)) + ", without a member" * bool(unnamed)
+
+    ends: dict[str, list[int]] = {}
+    for case in cases:
+        try:
+            ends.setdefault(capped(push, case), []).append(case)
+        except Late:
+            ends.setdefault(f"beyond {ASKED.seconds} s", []).append(case)
+    print(f"{len(cases)} push-overs of springs of family '{family}' to a drift of 5 %")
+    for text, which in sorted(ends.items(), key=lambda item: -len(item[1])):
+        few = which[:5] if len(which) < len(cases) / 4 else ""
+        print(f"{len(which):6d}  {text}  {few}", flush=True)
 
 
-KERNELS = ("Prescott", "Haswell", "SkylakeX")
+def rows(family: str, cases: range) -> list[list[float] | str]:
+    """Return the forces of cyclic paths in shares of the largest, or how a case failed."""
+
+    def cycle(case: int) -> list[float]:
+        rng = random_of(family, case)
+        made = building(rng) if family == "buildings" else frame(rng, family)
+        run = ended(lambda: rbsdem.cyclic(made, displacement=drifts(rng, made)))
+        return [float(value) for value in run.force / np.abs(run.force).max(initial=1.0)]
+
+    values: list[list[float] | str] = []
+    for case in cases:
+        try:
+            values.append(capped(cycle, case))
+        except (Late, Discard) as error:
+            values.append(type(error).__name__)
+    return values
 
 
-def cycled(family: str, frames: int) -> None:
-    """Print the forces of cyclic paths in shares of the largest: a line for each frame."""
-    rng = np.random.default_rng((SEED, list(FAMILIES).index(family)))
-    for _ in range(frames):
-        made = frame(rng, family)
-        run = ended(lambda made=made: rbsdem.cyclic(made, displacement=drifts(rng, made)))
-        size = np.abs(run.force).max(initial=1.0)
-        print(*(f"{value:.6f}" for value in run.force / size + 0.0))
+def compared(values: dict[str, Any], other: dict[str, Any]) -> None:
+    """Print how many paths depend on the kernel of OpenBLAS."""
+    for family, paths in values.items():
+        unlike = Counter[str]()
+        for case, (path, again) in enumerate(zip(paths, other[family], strict=True)):
+            if isinstance(path, str) or isinstance(again, str):
+                unlike["beyond their time or discarded"] += 1
+            elif len(path) != len(again) or np.abs(np.subtract(path, again)).max(initial=0) > 1e-6:
+                unlike[f"case {case}"] += 1
+        print(f"{len(paths)} cycles of family '{family}', unlike: {dict(unlike)}", flush=True)
 
 
-def kernels(frames: int) -> None:
-    """Print how many paths depend on the kernel of OpenBLAS that the processor has."""
-    for family in FAMILIES:
-        answers = []
-        for kernel in KERNELS:
-            words = (sys.executable, __file__, str(frames), str(SEED), "cycled", family)
-            told = subprocess.run(
-                words, env=os.environ | {"OPENBLAS_CORETYPE": kernel}, capture_output=True,
-                text=True, check=True,
-            )  # fmt: skip
-            answers.append(told.stdout.splitlines())
-        rows = [
-            [np.array(line.split(), float) for line in paths]
-            for paths in zip(*answers, strict=True)
-        ]
-        unlike = sum(
-            len({one.size for one in paths}) > 1 or np.ptp(np.array(paths), axis=0).max() > 3e-6
-            for paths in rows
-        )
-        print(f"{frames} cycles of family '{family}': {unlike} depend on the kernel", flush=True)
-
-
-if __name__ == "__main__" and sys.argv[3:4] == ["cycled"]:
+def main() -> None:
+    """Do the work asked for."""
     warnings.simplefilter("ignore")
-    cycled(sys.argv[4], CASES)
-elif __name__ == "__main__" and sys.argv[3:] == ["kernels"]:
-    kernels(CASES)
-elif __name__ == "__main__":
-    warnings.simplefilter("ignore")
-    for relation in sys.argv[3:] or RELATIONS:
-        tried(relation, CASES)
-    for springs in FAMILIES if not sys.argv[3:] else ():
-        pushed(springs, max(CASES // 20, 1))
-    if not sys.argv[3:]:
-        kernels(max(CASES // 20, 1))
+    cases = range(ASKED.cases) if ASKED.case is None else range(ASKED.case, ASKED.case + 1)
+    for kind in ASKED.kind:
+        if kind == "pushes":
+            for family in FAMILIES:
+                pushed(family, cases)
+        elif kind == "kernels":
+            values = {family: rows(family, cases) for family in (*FAMILIES, "buildings")}
+            if ASKED.write:
+                ASKED.write.write_text(json.dumps(values))
+            if ASKED.against:
+                compared(values, json.loads(ASKED.against.read_text()))
+        else:
+            names = (RELATIONS if kind == "relations" else SETS.get(kind)) or (kind,)
+            for name in names:
+                tried(name, cases)
+
+
+if __name__ == "__main__":
+    main()

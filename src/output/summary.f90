@@ -80,8 +80,8 @@ module rbs_output_summary
       procedure :: update_energies, get_figures, status
    end type summary_type
 
-   !> Forces closer than this share of them are the same peak.
-   real(wp), parameter :: same_peak = 1.0e-12_wp
+   !> Forces closer than this share of them are the same peak, as on a plateau, of which the first counts.
+   real(wp), parameter :: same_peak = 1.0e-9_wp
 
 contains
 
@@ -92,7 +92,6 @@ contains
       real(wp), intent(in) :: displacement, force
 
       if (abs(displacement) > abs(self%peak_displacement)) self%peak_displacement = displacement
-      ! Of peaks that differ by round-off the first one counts.
       if (abs(force) > (1.0_wp + same_peak)*abs(self%peak_force)) then
          self%peak_force = force
          self%displacement_at_peak = displacement
@@ -105,7 +104,7 @@ contains
       !> [N]
       real(wp), intent(in) :: shear
 
-      if (abs(shear) > abs(self%peak_base_shear)) self%peak_base_shear = shear
+      if (abs(shear) > (1.0_wp + same_peak)*abs(self%peak_base_shear)) self%peak_base_shear = shear
    end subroutine update_base_shear
 
    !> Take the energies of a moment into account; those of the last one stay.

@@ -48,12 +48,13 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      !> Springs blocked on their lines in their direction of motion, their number, and that with planes
-      integer :: blocked(path%moving), springs_blocked, stopped
+      !> Springs blocked on their lines in their direction of motion, their number, and that with planes; how
+      !> often each spring has changed its line here
+      integer :: blocked(path%moving), springs_blocked, stopped, changed(path%moving)
       logical :: found, through, is_singular
 
       path%direction = 0
-      path%changed = 0
+      changed = 0
       found = .false.
       is_singular = .false.
       through = .not. (path%by_force .or. path%springs%axial_load_varies)
@@ -87,15 +88,17 @@ contains
          call path%springs%restore()
          call follow_through(path, found)
          back = found .and. path%direction /= direction
-         if (back .and. .not. path%may_go_back) found = .false.
-         back = back .and. found
+         found = found .and. (path%may_go_back .or. .not. back)
          if (.not. path%goes_back .and. (back .or. .not. found)) then
+            back = found
             call path%springs%restore()
-            path%changed = 0
+            changed = 0
             call search(merge(by_blocks, to_the_end, back))
-            if (found .or. .not. back) return
-            call path%springs%restore()
-            call follow_through(path, found)
+            back = back .and. .not. found
+            if (back) then
+               call path%springs%restore()
+               call follow_through(path, found)
+            end if
          end if
          path%goes_back = back
       end subroutine go_through
@@ -146,6 +149,7 @@ contains
             if (left < 0 .and. effort < to_the_end) return
             call change_lines(left >= 0)
          end do
+         found = .false.
       end subroutine search
 
       !> Springs that yield at once may leave a node free to turn, though one of them holds it: the one that
@@ -157,8 +161,8 @@ contains
          turns = pack([(i, i=1, path%moving)], path%springs%unload_on_reversal(:path%moving) /= 0)
          found = size(turns) > 0
          if (.not. found) return
-         i = turns(minloc(2*path%changed(turns) + merge(0, 1, path%arrived(turns) /= 0), dim=1))
-         path%changed(i) = path%changed(i) + 1
+         i = turns(minloc(2*changed(turns) + merge(0, 1, path%arrived(turns) /= 0), dim=1))
+         changed(i) = changed(i) + 1
          call path%springs%leave(i, -path%springs%unload_on_reversal(i))
       end subroutine let_one_unload
 
@@ -192,11 +196,11 @@ contains
 
          is_unique = path%by_force .or. path%is_stable
          most = huge(1)
-         if (.not. (all_of_them .or. is_unique)) most = minval(path%changed(blocked(:springs_blocked)))
+         if (.not. (all_of_them .or. is_unique)) most = minval(changed(blocked(:springs_blocked)))
          do j = 1, merge(springs_blocked, min(springs_blocked, 1), all_of_them .or. .not. is_unique)
             associate (i => blocked(j))
-               if (path%changed(i) > most) cycle
-               path%changed(i) = path%changed(i) + 1
+               if (changed(i) > most) cycle
+               changed(i) = changed(i) + 1
                call leave(path%springs, i, merge(1, -1, path%rate(i) > 0.0_wp))
             end associate
          end do
@@ -234,11 +238,11 @@ contains
       !> go back
       real(wp), dimension(path%moving) :: v, gap, forward, backward
       !> Directions ahead, 0 for springs that have none; the line of each: that ahead, that on which it has
-      !> come to the corner, that on which it goes back; whether the last one is known
-      integer, dimension(path%moving) :: ahead, line
+      !> come to the corner, that on which it goes back; directions of those that have changed it last, 0 for
+      !> others
+      integer, dimension(path%moving) :: ahead, line, heading
+      !> Whether the line on which it goes back is known
       logical :: is_known(path%moving)
-      !> Springs that have changed their lines last, and their directions
-      integer :: changed(path%moving), heading(path%moving), count
       integer, parameter :: on = 0, came = 1, back = 2
       integer :: i, m, sense, pivots
 
@@ -251,22 +255,17 @@ contains
       is_known = .false.
       call go_ahead()
       forward = path%springs%k(:m)
-      count = 0
-      do i = 1, m
-         if (ahead(i) == 0) cycle
-         call add(i, ahead(i))
-      end do
+      heading = ahead
       path%passes = .true.
       do pivots = 1, 100 + 4*m
          call find_rates(1)
          if (.not. found) exit
-         sense = merge(1, -1, sum(heading(:count)*path%rate(changed(:count))*gap(changed(:count))* &
-                                  path%structure%initial_stiffness(changed(:count))) > 0.0_wp)
+         sense = merge(1, -1, sum(heading*path%rate(:m)*gap*path%structure%initial_stiffness(:m)) > 0.0_wp)
          path%rate = sense*path%rate
          call change_first()
-         if (count == 0 .or. all(path%arrived(:m) == 0 .or. line /= on)) exit
+         if (all(heading == 0) .or. all(path%arrived(:m) == 0 .or. line /= on)) exit
       end do
-      found = found .and. count == 0
+      found = found .and. all(heading == 0)
       ! Where all turn back, it is the way on which the path has come.
       if (found) found = any(path%rate(:m)*path%rate_in(:m) > 0.0_wp .and. &
                              (ahead /= 0 .or. path%springs%unload_on_reversal(:m) /= 0))
@@ -306,18 +305,10 @@ contains
          end do
       end subroutine go_ahead
 
-      subroutine add(i, direction)
-         integer, intent(in) :: i, direction
-
-         count = count + 1
-         changed(count) = i
-         heading(count) = direction
-      end subroutine add
-
       !> The springs that are blocked first change their lines.
       subroutine change_first()
          real(wp) :: at(m), clearance(m), least
-         integer :: next(m), blocked(m), way, i
+         integer :: next(m), blocked(m), count, way, i
          logical :: is_blocked(m)
 
          call find_blocked(path%springs, path%rate(:m), blocked, count)
@@ -344,7 +335,7 @@ contains
             end if
             clearance(i) = max((at(i) - v(i))*way, 0.0_wp)/abs(path%rate(i))
          end do
-         count = 0
+         heading = 0
          least = minval(clearance)
          if (.not. least < huge(1.0_wp)) return
          v = v + least*path%rate(:m)
@@ -352,7 +343,7 @@ contains
             if (.not. clearance(i) < huge(1.0_wp)) cycle
             if ((clearance(i) - least)*abs(path%rate(i)) > &
                 merge(at_once, same_rate, next(i) == back)*gap(i)) cycle
-            call add(i, merge(1, -1, path%rate(i) > 0.0_wp))
+            heading(i) = merge(1, -1, path%rate(i) > 0.0_wp)
             if (next(i) == back) then
                gap(i) = abs(v(i))
             else

@@ -218,7 +218,9 @@ contains
          self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
          call solve(2, residual, settled)
          ! In a mechanism the correction of round-off is round-off itself; more than that is found by the row.
-         if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height) then
+         if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height .or. &
+             has_no_stiffness(self%moving, structure%initial_stiffness, self%moved(:, 2), &
+                              dot_product(self%residual, self%change(:, 1)))) then
             self%moved(:, 2) = 0.0_wp
             y(2) = 0.0_wp
          end if
@@ -338,6 +340,15 @@ contains
          end if
       end associate
    end subroutine factor
+
+   !> Whether the work of a correction is that of no stiffness, beside the initial one.
+   pure logical function has_no_stiffness(springs, initial, motion, work)
+      integer, intent(in) :: springs
+      !> Stiffness and motion of the springs; twice the work [J]
+      real(wp), intent(in) :: initial(springs), motion(springs), work
+
+      has_no_stiffness = abs(work) < no_stiffness*sum(initial*motion**2)
+   end function has_no_stiffness
 
    !> Springs without stiffness share a motion as with a hardening in proportion to their initial stiffness,
    !> which the refinement takes away.

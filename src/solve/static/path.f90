@@ -102,8 +102,6 @@ module rbs_solve_static_path
       !> test would have been held, and the energy that it gained in others [J]
       integer :: snap_backs = 0
       real(wp) :: released = 0.0_wp, gained = 0.0_wp
-      !> How often each spring has changed its line at the present corner (springs)
-      integer, allocatable :: changed(:)
       !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and
       !> the steps that were cut
       real(wp) :: at_begin = 0.0_wp, load_work = 0.0_wp
@@ -211,7 +209,7 @@ contains
       self%moving = moving
       call self%structure%create_springs(self%springs, self%structure%constant_axial)
       allocate (self%rate(self%structure%coordinates), source=0.0_wp)
-      allocate (self%changed(self%springs%count), self%arrived(self%springs%count), source=0)
+      allocate (self%arrived(self%springs%count), source=0)
       allocate (self%one_way(self%springs%count), source=.false.)
       allocate (self%k_in(self%springs%count), source=0.0_wp)
       allocate (self%rotation(self%structure%n))
