@@ -12,7 +12,12 @@ RBSDEM_WITH_BROWSER=1
 . "$(dirname "${BASH_SOURCE[0]}")/build.sh"
 
 cd "$root"
-# Leaks and the build with checks go on behind the rest, where a core is free.
+# What goes on behind the rest, where a core is free; what it says comes when the rest needs it.
+behind() {
+    local name=$1
+    shift
+    (renice -n 10 -p "$BASHPID" >/dev/null && "$@") >"build/$name.log" 2>&1 &
+}
 result_of() {
     local status=0
     wait "$1" || status=$?
@@ -25,14 +30,16 @@ build_with_checks() {
     install_rbsdem --upgrade --target build/checked-site -Cbuild-dir=build/checked -Csetup-args=-Dchecked=true . &&
         meson compile -C build/checked >/dev/null
 }
+lint() {
+    ruff check . && ruff format --check -q . && mypy && lint-imports --no-logo && fortitude check -q &&
+        check-jsonschema -q --builtin-schema vendor.github-workflows .github/workflows/*.yml
+}
 
-say "linters"
-ruff check .
-ruff format --check -q .
-mypy >build/types.log || { cat build/types.log; exit 1; }
-lint-imports >build/imports.log || { cat build/imports.log; exit 1; }
-fortitude check -q
-check-jsonschema -q --builtin-schema vendor.github-workflows .github/workflows/*.yml
+say "linters, and the build with checks, behind the Fortran tests"
+behind linters lint
+linters=$!
+behind checked build_with_checks
+checks=$!
 
 say "the Fortran part alone can be set up"
 [ -e build/fortran/build.ninja ] || meson setup build/fortran >/dev/null
@@ -41,26 +48,29 @@ say "the Fortran part alone can be set up"
 say "Fortran tests, optimised as for use"
 meson test -C build/python --quiet --print-errorlogs
 
-bash scripts/memory.sh build/python >build/memory.log 2>&1 &
+behind memory bash scripts/memory.sh build/python
 leaks=$!
-(renice -n 10 -p "$BASHPID" >/dev/null && build_with_checks) >build/checked.log 2>&1 &
-checks=$!
+say "linters"
+result_of "$linters" linters
 
-say "Python tests, fuzzing, regression; examples of the documentation"
+say "Python tests, fuzzing, regression"
 export MPLBACKEND=Agg
 wait "$browser"
+behind docs python scripts/check_docs.py
+docs=$!
 python -m pytest -q -n 2 --dist worksteal
-python scripts/check_docs.py
 
 # Round-off must not choose the way of a path. Another kernel of OpenBLAS, if that is the LAPACK, has other sums.
 module=$(python -c 'import rbsdem._rbsdem as module; print(module.__file__)')
 if grep -q -m1 avx2 /proc/cpuinfo && ldd "$module" | awk '/blas|lapack/ {print $3}' | xargs readlink -f | grep -q openblas; then
     kernel=$(grep -q -m1 avx512f /proc/cpuinfo && echo Haswell || echo Prescott)
     say "paths through corners once more, with the kernel $kernel of OpenBLAS"
-    OPENBLAS_CORETYPE=$kernel python -m pytest -q -n 2 tests/python/test_softening.py \
+    RBSDEM_CASES=0.5 OPENBLAS_CORETYPE=$kernel python -m pytest -q -n 2 tests/python/test_softening.py \
         tests/python/test_invariants_frames.py -k "softening or mirror or order or bit or path or corner"
 fi
 
+say "examples of the documentation"
+result_of "$docs" docs
 say "leaks, one run of each analysis"
 result_of "$leaks" memory
 
@@ -69,14 +79,16 @@ install_rbsdem -Cbuild-dir="$root/build/python" --editable .
 (cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.peer.paper_columns()')
 install_rbsdem -Cbuild-dir="$root/build/python" .
 
-# The tests in Python that bring numbers of all kinds to Fortran; the others see nothing new there.
+# The tests in Python that bring numbers of all kinds to Fortran; the others see nothing new there. Of random
+# cases a fifth, as they go the same ways.
 say "what calls Fortran once more, with bounds checks and floating-point traps"
 crossing=(tests/regression)
 for name in fuzz extremes_columns extremes_input extremes_rotations extremes_springs \
     extremes_steps extremes_time static dynamics events implicit modes initial springs \
-    springs_capped layered interaction physics column ensembles invariants motions strains doors base_forces section messages; do
+    springs_capped layered interaction physics column ensembles invariants motions strains doors base_forces section messages \
+    invariants_frames plans; do
     crossing+=("tests/python/test_$name.py")
 done
 result_of "$checks" checked
 meson test -C build/checked --quiet --print-errorlogs
-PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --dist worksteal "${crossing[@]}"
+RBSDEM_CASES=0.2 PYTHONPATH="$root/build/checked-site" python -m pytest -q -n 2 --dist worksteal "${crossing[@]}"

@@ -242,7 +242,13 @@ def convert(record: object, who: str) -> None:
     for name, make, optional in _conversions(kind):
         value = getattr(record, name)
         if not optional or given(value) is not None:
-            object.__setattr__(record, name, make(value, f"{who}: {name}"))
+            put(record, **{name: make(value, f"{who}: {name}")})
+
+
+def put(record: object, **values: Any) -> None:
+    """Set fields of a frozen record, as only its own making may."""
+    for name, value in values.items():
+        object.__setattr__(record, name, value)
 
 
 _PLAIN: dict[Any, Callable[[Any, str], Any]] = {
@@ -254,7 +260,7 @@ _PLAIN: dict[Any, Callable[[Any, str], Any]] = {
 def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], bool]]:
     """Return name and conversion of the fields that have one, and whether they may be None."""
     hints = get_type_hints(record)
-    found = []
+    conversions = []
     for name in [field.name for field in fields(record)]:
         kinds = [kind for kind in get_args(hints[name]) if kind is not NoneType]
         optional = len(kinds) < len(get_args(hints[name]))
@@ -265,8 +271,8 @@ def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], boo
         if make is None and isinstance(kind, type):
             make = partial(_instance_of, kind)
         if make is not None:
-            found.append((name, make, optional))
-    return found
+            conversions.append((name, make, optional))
+    return conversions
 
 
 def _word(words: tuple[str, ...], value: object, name: str) -> str:

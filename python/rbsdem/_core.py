@@ -120,8 +120,8 @@ def _number_or_switch(value: Any, name: str) -> float:
     try:
         return number(value, name)
     except InputError:
-        given = _arguments.shown(value)
-        raise InputError(f"{name} = {given} is neither a number nor a word") from None
+        told = _arguments.shown(value)
+        raise InputError(f"{name} = {told} is neither a number nor a word") from None
 
 
 class Answer(NamedTuple):
@@ -227,14 +227,14 @@ def _ask(
     that is asked about.
     """
     text, numbers = statement if isinstance(statement, Statement) else (statement, [])
-    given = {k: np.asarray(v, float).ravel() for k, v in arrays.items() if v is not None}
-    pieces = list(given.values())
+    named = {k: np.asarray(v, float).ravel() for k, v in arrays.items() if v is not None}
+    pieces = list(named.values())
     answer, address, sizes = _rbsdem.rbs_evaluate(
         what,
         # As bytes: f2py takes no characters beyond ASCII.
         text.encode("utf-8", "replace"),
         numbers,
-        " ".join([f"{name}:{piece.size}" for name, piece in given.items()]),
+        " ".join([f"{name}:{piece.size}" for name, piece in named.items()]),
         np.concatenate(pieces) if len(pieces) > 1 else pieces[0] if pieces else _NOTHING,
         _NO_STRUCTURE if made is None else made.address,
         control,
@@ -248,9 +248,9 @@ def _ask(
     return Answer(raw[:length].decode("utf-8", "replace"), values, rows, status, whole)
 
 
-def evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer:
+def evaluate(what: str, statement: Statement | str = "", **named: Any) -> Answer:
     """Return an answer; raise the exception that its status stands for."""
-    answer = _ask(what, statement, **given)
+    answer = _ask(what, statement, **named)
     if answer.status:
         error = SolveError if answer.status == _ANALYSIS_FAILED else InputError
         raise error(answer.text)
@@ -323,17 +323,17 @@ def groups(statement: Statement) -> Iterator[tuple[str, dict[str, Any]]]:
         yield name, values
 
 
-def typed(group: str, given: Mapping[str, Any]) -> dict[str, Any]:
+def typed(group: str, raw: Mapping[str, Any]) -> dict[str, Any]:
     """Return values in the types of their keys; whole numbers and switches arrive as floats."""
     types = {"integer": int, "logical": bool}
-    found = dict(given)
+    values = dict(raw)
     for key in keys()["groups"][group]:
         name = key["name"]
-        if name in found and key.get("values", 1) > 1:
-            found[name] = list(map(types.get(key["kind"], float), several(found[name])))
-        elif name in found and key["kind"] in types:
-            found[name] = types[key["kind"]](found[name])
-    return found
+        if name in values and key.get("values", 1) > 1:
+            values[name] = list(map(types.get(key["kind"], float), several(values[name])))
+        elif name in values and key["kind"] in types:
+            values[name] = types[key["kind"]](values[name])
+    return values
 
 
 def several(value: float | list[float]) -> list[float]:
@@ -343,8 +343,8 @@ def several(value: float | list[float]) -> list[float]:
 
 def _split_item(item: str) -> tuple[str, str, str]:
     for mark in ("=", ":"):
-        key, found, rest = item.partition(mark)
-        if found and key.isidentifier():
+        key, there, rest = item.partition(mark)
+        if there and key.isidentifier():
             return key, mark, rest
     return item, "", ""
 
@@ -358,8 +358,8 @@ def keys() -> dict[str, Any]:
     "meaning" and, where they apply, "unit", "least", "least_open", "most", "most_open", "choices",
     "default", "optional" and "values" (how many there may be at most).
     """
-    found: dict[str, Any] = json.loads(evaluate("keys").text)
-    return found
+    listed: dict[str, Any] = json.loads(evaluate("keys").text)
+    return listed
 
 
 @cache
@@ -381,8 +381,8 @@ def note_limits() -> tuple[float, float, float]:
 @cache
 def units() -> dict[str, str]:
     """Return the units of all values that a row may hold, by name."""
-    found = (channel.partition(" ") for channel in _names()[0].rstrip(";").split(";"))
-    return {name: unit for name, _, unit in found}
+    pairs = (channel.partition(" ") for channel in _names()[0].rstrip(";").split(";"))
+    return {name: unit for name, _, unit in pairs}
 
 
 #: Arrays by name in the order of the channels, the state at the end (None after a failure), summary
@@ -404,10 +404,10 @@ def cyclic(
     Without `axial_load` it is constant, without `before` the column is virgin. With `corners` there
     are rows between the targets too, where a spring leaves its line.
     """
-    given: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
-    given |= {"before": before, "corners": corners}
+    inputs: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
+    inputs |= {"before": before, "corners": corners}
     with _interruptible() as control:
-        answer = _ask("cyclic", settings, control, structure, **given)
+        answer = _ask("cyclic", settings, control, structure, **inputs)
     return _finish(answer, answer.values)
 
 
@@ -428,12 +428,12 @@ def time_history(
     `batch`; of each the time [s] and the displacement of the top [m] are returned, NaN where
     it is not reached.
     """
-    given: dict[str, Any] = {"time": time, "watches": thresholds, "initial": initial}
-    given |= {"opening_given": opening_given, "before": before, **loads}
+    inputs: dict[str, Any] = {"time": time, "watches": thresholds, "initial": initial}
+    inputs |= {"opening_given": opening_given, "before": before, **loads}
     told = False
     while True:
         with _interruptible() as control:
-            answer = _ask("time_history", settings, control, structure, told=told, **given)
+            answer = _ask("time_history", settings, control, structure, told=told, **inputs)
         if answer.status != _LONG_RUN:
             break
         tell(answer.text)
@@ -443,11 +443,11 @@ def time_history(
     return run, answer.values[: 2 * count].reshape(2, count).T
 
 
-def settings(given: Mapping[str, Any]) -> Statement:
+def settings(keywords: Mapping[str, Any]) -> Statement:
     """Return the settings of an analysis as a statement, each as its key takes it."""
     kinds = {key["name"]: key["kind"] for key in keys()["groups"]["analysis"]}
     values: dict[str, Any] = {}
-    for name, value in given.items():
+    for name, value in keywords.items():
         if kinds[name] == "logical":
             values[name] = int(boolean(value, name))
         else:
@@ -487,7 +487,9 @@ def batch(
             "".join(statement.text + _AFTER for statement in statements),
             [number for statement in statements for number in statement.numbers],
         ),
-        "counts": [(len(own.numbers), len(watch), len(state)) for own, watch, state in sizes],
+        "counts": [
+            (len(statement.numbers), len(watch), len(state)) for statement, watch, state in sizes
+        ],
         "watches": np.concatenate(thresholds),
         "before": np.concatenate(before),
         "time": np.concatenate([time for time, _ in motions]),

@@ -1,8 +1,8 @@
 """Relations over random structures: how they are tried, in tests and in studies.
 
 A relation is a function of a random generator; `relation` makes it a test of some hundred cases.
-RBSDEM_CASES=50 takes fifty times as many, RBSDEM_SEED=7 others; a failure names its case, and
-`replay("relation", case)` runs it alone.
+RBSDEM_CASES=50 takes fifty times as many, 0.2 a fifth, RBSDEM_SEED=7 others; a failure names its
+case, and `replay("relation", case)` runs it alone.
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ def relation(
             shown = "\n".join(line[:600] for line in found.faults[:20])
             tried = len(found.distances) + sum(": " in one for one in found.faults)
             assert not found.faults, f"{len(found.faults)} of {tried}:\n{shown}"
-            assert tried >= judged * found.cases, f"only {tried} of {found.cases} were judged"
+            # Few cases say little of the share.
+            enough = TIMES < 1 or tried >= judged * found.cases
+            assert enough, f"only {tried} of {found.cases} were judged"
 
         test.__name__ = judge.__name__
         test.__doc__ = judge.__doc__

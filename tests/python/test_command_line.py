@@ -24,6 +24,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem import __main__ as python_command
 from rbsdem.springs import Bilinear, Takeda
 
 BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
@@ -116,15 +117,11 @@ def test_what_a_command_prints(run_cli, folder, arguments, words):
 
 
 @pytest.mark.parametrize("command", ["trade", "peer", "ensemble"])
-def test_help_of_a_command_of_the_package(command):
-    shown = [
-        subprocess.run(
-            [sys.executable, "-m", "rbsdem", *arguments], capture_output=True, text=True, check=True
-        ).stdout
-        for arguments in ([command, "--help"], ["--help", command])
-    ]
-    assert shown[0].startswith(f"Usage: rbsdem {command} ")
-    assert shown[1] == shown[0]
+def test_help_of_a_command_of_the_package(command, monkeypatch, capsys):
+    for words in ([command, "--help"], ["--help", command]):
+        monkeypatch.setattr(sys, "argv", ["rbsdem", *words])
+        assert python_command.main() == 0
+        assert capsys.readouterr().out.startswith(f"Usage: rbsdem {command} ")
 
 
 def test_console_command_hands_over_to_the_executable(folder):
@@ -609,7 +606,7 @@ def test_case_from_a_pipe(executable, folder, good, case):
 
 def test_history_through_a_pipe_is_that_of_a_file(executable, case_text, tmp_path):
     """Longer than the buffer of a pipe, written in pieces."""
-    rows = "".join(f"{1e-3 * (i % 40)!r}\n" for i in range(60_000)).encode()
+    rows = "".join(f"{1e-3 * (i % 40)!r}\n" for i in range(20_000)).encode()
     (tmp_path / "history.csv").write_bytes(b"displacement_m\n" + rows)
     os.mkfifo(tmp_path / "pipe")
     for name in ("history.csv", "pipe"):

@@ -79,7 +79,6 @@ def test_states_are_checked_before_the_start(tmp_path: Path) -> None:
 
 
 def test_a_store_belongs_to_its_states(tmp_path: Path) -> None:
-    pytest.importorskip("pyarrow")
     state = shaken(column())
     runs = [
         rbsdem.ensemble(column(), motion(2), initial=state, store=tmp_path, **NEWMARK)

@@ -116,16 +116,6 @@ def test_numbers_of_the_readme_stand_in_the_pages_it_names():
     assert counted >= 8
 
 
-def test_commands_of_the_readme_are_those_there():
-    """Scripts and documents that the README names exist."""
-    text = (REPOSITORY / "README.md").read_text("utf-8")
-    named = set(re.findall(r"\b(?:scripts|docs|studies|tests|data|examples)/[\w./-]*\w", text))
-    assert "scripts/demo.sh" in named
-    assert "scripts/test.sh" in named
-    missing = [name for name in sorted(named) if not (REPOSITORY / name).exists()]
-    assert not missing
-
-
 def test_ready_models_are_those_of_the_readme():
     """The house of the README is that of `rbsdem.examples`, to the last bit of its push-over."""
     text = (REPOSITORY / "README.md").read_text("utf-8")

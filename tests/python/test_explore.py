@@ -31,7 +31,6 @@ from rbsdem.run.frame_result import FrameResult
 from rbsdem.springs import Elastic
 from rbsdem.web import answers as web_answers
 from rbsdem.web.answers import Answers, shown_rows
-from rbsdem.web.exports import PAGE, REPORT, parts
 from rbsdem.web.report import report, report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
 from rbsdem.web.state import BUILDING, DEFAULT
@@ -857,20 +856,6 @@ def test_a_report_leaves_the_files_of_the_user_alone(tmp_path, capsys):
 def test_what_has_no_report_says_so(tmp_path):
     with pytest.raises(rbsdem.InputError, match="there is none of a Column"):
         report(rbsdem.peer.paper_columns("pdelta")["zahn_7"], tmp_path / "x.html")
-
-
-@pytest.mark.parametrize("modules", [PAGE, REPORT])
-def test_modules_of_a_page_can_stand_in_one_file(modules):
-    seen: dict[str, str] = {}
-    files = parts(modules=modules)
-    for name in modules:
-        text = files[name].decode()
-        for imported in re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE):
-            assert imported in modules[: modules.index(name)]
-        own = r"^(?:export )?(?:async )?(?:function|const|let) ([\w$]+)"
-        for word in re.findall(own, text, re.MULTILINE) if modules is REPORT else ():
-            assert seen.setdefault(word, name) == name, word
-        assert not re.search(r"^export [{*d]|^import .* as ", text, re.MULTILINE)
 
 
 def test_nearest_tests(peer_folder):

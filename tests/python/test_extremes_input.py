@@ -1,6 +1,6 @@
-"""Extremes of the input: NaN, Inf, denormal and enormous numbers in every place; threads.
+"""Extremes of the input: what is only just allowed must run; threads.
 
-What is only just allowed must run. Values of single keys: `test_messages.py`.
+What is not allowed: `test_messages.py`, `test_hostile.py`.
 """
 
 from __future__ import annotations
@@ -18,38 +18,8 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
 )
 
-NAN, INF = float("nan"), float("inf")
 IMPLICIT = ("newmark", "hht", "generalised_alpha")
 METHODS = ("rk4", "rk45", *IMPLICIT)
-
-COLUMN = {
-    "height": 2.0, "mass": None, "n": 2,
-    "shear": Elastic(1e8), "flexure": Elastic(1e8),
-    "lengths": [0.9, 1.1], "masses": [300.0, 200.0], "axial_load": 1e4, "gravity": 9.8,
-    "top_mass": 100.0, "top_inertia": 3.0, "rotary_inertia": [30.0, 20.0],
-    "damping": rbsdem.Damping(0.1, 1e-5), "kinematics": "pdelta", "self_weight": True,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("value", [NAN, INF, -INF, 1e51, -1.7e308])
-def test_a_value_of_a_history_or_of_a_state_is_named(value):
-    """With its place; denormal values are small values like others."""
-    column = rbsdem.Column(**COLUMN)
-    for name in ("force", "ground_acceleration", "vertical_acceleration", "axial_load", "time"):
-        for index in (0, 3, 5):
-            loads = {"time": np.arange(6) * 1e-3, "force": np.zeros(6)}
-            loads[name] = np.linspace(0.0, 5e-3, 6)
-            loads[name][index] = value
-            with pytest.raises(rbsdem.InputError, match=f"{name}: value {index + 1} of 6"):
-                rbsdem.time_history(column, **loads, method=METHODS[index % 5])
-    for name in ("displacement", "force"):
-        for level in ("small", "pdelta", "finite"):
-            other = rbsdem.Column(**COLUMN | {"kinematics": level})
-            with pytest.raises(rbsdem.InputError, match=f"{name}: value 2 of 3"):
-                rbsdem.cyclic(other, **{name: [0.0, value, 0.0]})
-    for name in ("slip", "rotation", "slip_velocity", "rotation_velocity"):
-        with pytest.raises(rbsdem.InputError, match=r"initial.*value"):
-            rbsdem.time_history(column, [0.0, 1.0], method="rk4", initial={name: [0.0, value]})
 
 
 def test_numbers_at_the_edge_of_meaning_run():

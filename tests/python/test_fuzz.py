@@ -1,4 +1,4 @@
-"""Fuzzing: 1000 mutated namelists and 1000 mutated history files.
+"""Fuzzing: 400 mutated namelists and 400 mutated history files.
 
 No crash, no hang, no traceback: exit code 0, 1 or 2, a message that begins with `rbsdem: ` where
 it is not 0, finite numbers where it is. The seed is fixed; what fails is kept in the folder of the
@@ -25,7 +25,7 @@ from conftest import REPOSITORY
 
 import rbsdem
 
-COUNT = 1000
+COUNT = 400
 SEED = 19_860_704
 
 #: A process that takes longer [s] must at least tell on a terminal how far it is, or write rows.

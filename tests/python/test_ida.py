@@ -201,7 +201,6 @@ def test_the_scale_of_the_records_does_not_matter(column, records, hunted):
 
 def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
     """The second start asks for the same runs, and the store has them all."""
-    pytest.importorskip("pyarrow")
     options = {
         "levels": CollapseSearch(points=2),
         "collapse_drift": 0.05,
@@ -280,7 +279,6 @@ def test_parts_of_a_search_come_together_in_a_store(column, records, hunted, tmp
 
 
 def test_a_search_that_is_interrupted_goes_on(column, records, hunted, tmp_path):
-    pytest.importorskip("pyarrow")
     calls = []
 
     def interrupting(result):

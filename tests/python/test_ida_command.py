@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import pandas
@@ -91,11 +92,13 @@ def test_settings_of_the_case(folder, tmp_path, monkeypatch):
     assert not {"dt", "rho_infinity"} & set(asked[1])
 
 
-def test_hazard_adds_frequencies(folder, tmp_path, capsys):
+def test_hazard_adds_frequencies(folder, tmp_path, capsys, monkeypatch):
+    """The csv files need no pyarrow."""
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
     hazard = tmp_path / "hazard.csv"
     hazard.write_text("# a site\nsa,frequency\n0.1,1\n1,0.03\n10,0.0003\n100,1e-7\n")
     words = [str(CASE), str(folder), *FEW, "--limit", "repair=0.01", "--hazard", str(hazard)]
-    assert main(["ida", *words, "--beta", "repair=0.35"]) == 0
+    assert main(["ida", *words, "--beta", "repair=0.35", "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "Per year" in printed
     line = next(line for line in printed.splitlines() if "repair" in line)

@@ -92,7 +92,7 @@ def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
     return f"{name}: by {share.max():.1e} of {size:.3g} in row {row} of {len(one)}"
 
 
-@relation(600, judged=0.9)
+@relation(300, judged=0.9)
 def test_springs_alone(rng: Rng) -> None:
     """Waiting, a path cut short, other units, the other side: bits.
 
@@ -181,7 +181,7 @@ def places(column: rbsdem.Column, q: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return (across + swing).sum(axis=1), top, (drop / 2 - lowered)[:, bodies]
 
 
-@relation(500, judged=0.85)
+@relation(250, judged=0.85)
 def test_a_path_is_in_balance(rng: Rng) -> None:
     """The top is where its joints bring it, each joint holds the loads, energy comes from nowhere.
 
@@ -259,7 +259,7 @@ def turns(column: rbsdem.Column) -> rbsdem.Column:
         raise
 
 
-@relation(150, judged=0.5)
+@relation(75, judged=0.5)
 def test_springs_of_a_path_are_on_their_rules(rng: Rng) -> None:
     """Where all joints go the way of the force, its turns are theirs: round-off.
 
@@ -281,7 +281,7 @@ def test_springs_of_a_path_are_on_their_rules(rng: Rng) -> None:
             assert apart <= near * size, f"{name} {i}, {spring.rule}: by {apart / size:.1e}"
 
 
-@relation(400, judged=0.8)
+@relation(200, judged=0.8)
 def test_mirror(rng: Rng) -> None:
     """Left and right are names: round-off."""
     column, loading = static_case(rng)
@@ -385,7 +385,7 @@ def unscaled(
     return with_channels(run, {name: getattr(run, name) / size for name, size in sizes.items()})
 
 
-@relation(400, judged=0.9)
+@relation(200, judged=0.9)
 def test_powers_of_two(rng: Rng) -> None:
     """Units are names, and with small rotations an amplitude is one: round-off.
 
@@ -423,7 +423,7 @@ def put_between(values: np.ndarray, parts: int, start: float = 0.0) -> np.ndarra
     return put[1:]
 
 
-@relation(400, judged=0.85)
+@relation(200, judged=0.85)
 def test_points_on_the_way(rng: Rng) -> None:
     """A path is a line, not its points: round-off, with exact rotations that of equilibrium."""
     column, loading = static_case(rng)
@@ -446,7 +446,7 @@ def test_points_on_the_way(rng: Rng) -> None:
     )
 
 
-@relation(150, judged=0.4)
+@relation(75, judged=0.4)
 def test_a_constant_axial_history(rng: Rng) -> None:
     """A load is stated as a number or as a history, for which there is another solver: round-off.
 
@@ -469,7 +469,7 @@ def test_a_constant_axial_history(rng: Rng) -> None:
         assert apart <= 1e-5 * size, f"{name}: by {apart} J of {size}"
 
 
-@relation(300, judged=0.8)
+@relation(150, judged=0.8)
 def test_cut_and_restart(rng: Rng) -> None:
     """A path that goes on in the state of another one is one path: bits."""
     column, loading = static_case(rng)
@@ -508,7 +508,7 @@ def few_rows(whole: rbsdem.Result, kept: rbsdem.Result, every: int) -> None:
     assert whole.reached is None or np.array_equal(whole.reached, kept.reached, equal_nan=True)
 
 
-@relation(200, judged=0.8)
+@relation(100, judged=0.8)
 def test_few_rows(rng: Rng) -> None:
     """Which rows are kept is of no weight: bits, and the same figures."""
     column, loading = static_case(rng)
@@ -543,7 +543,7 @@ def figures(result: rbsdem.Result) -> dict[str, float]:
     return told | {name: abs(result.summary[name]) for name in names}
 
 
-@relation(150, judged=0.3)
+@relation(75, judged=0.3)
 def test_figures_do_not_depend_on_the_rows(rng: Rng) -> None:
     """Points on the same lines, and rows that are not kept, change nothing that is measured.
 
@@ -610,7 +610,7 @@ def each_stated(column: rbsdem.Column) -> rbsdem.Column:
     return other
 
 
-@relation(150, judged=0.8)
+@relation(75, judged=0.8)
 def test_springs_stated_once_or_each(rng: Rng) -> None:
     """A spring that several joints have is theirs one by one: bits."""
     column, loading = static_case(rng)
@@ -636,7 +636,7 @@ def relayered(rng: Rng, column: rbsdem.Column) -> rbsdem.Column:
     return replace(column, flexure=springs, footing=beneath)
 
 
-@relation(200, judged=0.8)
+@relation(100, judged=0.8)
 def test_layers_in_another_order_and_in_halves(rng: Rng) -> None:
     """Layers side by side are a sum: round-off."""
     column, loading = static_case(rng, flexure=["layered"])
@@ -746,7 +746,7 @@ def stiffest(column: rbsdem.Column) -> float:
     return max(found)
 
 
-@relation(300, judged=0.7)
+@relation(150, judged=0.7)
 def test_huge_axial_springs_change_nothing(rng: Rng) -> None:
     """Joints that hardly open are joints that do not: to the share of the stiffnesses, 1e-7."""
     kinematics = str(rng.choice(["small", "pdelta"]))
@@ -764,7 +764,7 @@ def test_huge_axial_springs_change_nothing(rng: Rng) -> None:
     )
 
 
-@relation(200, judged=0.6)
+@relation(100, judged=0.6)
 def test_a_huge_footing_changes_nothing(rng: Rng) -> None:
     """A footing that hardly moves is the ground: to the share of the stiffnesses, 1e-6."""
     column, loading = static_case(rng, footing=None, axial_height=None)
@@ -787,7 +787,7 @@ def test_a_huge_footing_changes_nothing(rng: Rng) -> None:
     )
 
 
-@relation(300, judged=0.3)
+@relation(150, judged=0.3)
 def test_driven_by_its_own_force(rng: Rng) -> None:
     """Where the force grows all the way, it brings the displacement back: round-off over slope."""
     column, loading = static_case(

@@ -20,10 +20,9 @@ from reference_chain import Linear, chain
 import rbsdem
 from rbsdem import compare_methods
 from rbsdem.frames import Frame, FrameMember
-from rbsdem.methods import ladder, physics
+from rbsdem.methods import ladder, study
 from rbsdem.methods.ladder import study_case
-from rbsdem.methods.physics import split_bodies
-from rbsdem.methods.study import MethodStudy
+from rbsdem.methods.study import MethodStudy, split_bodies
 from rbsdem.output.methods import report
 from rbsdem.run.accuracy import Answer, at_times, common_interval, errors_of
 from rbsdem.springs import Bilinear, Compression, Elastic
@@ -289,7 +288,7 @@ def test_the_inverse_adds_what_was_lost_on_the_way():
     case = study_case(ELASTIC, None, {"displacement": CYCLES}, None, None)
     there = case.run(ladder.Setting("static", "small", parts=1)).answer
     more = dataclasses.replace(there, response=there.response * (1 + 1e-6))
-    back = physics._inverse(case, more, 1).answer
+    back = study._inverse(case, more, 1).answer
     assert back.response == pytest.approx(there.response * (1 + 2e-6), rel=1e-9, abs=1e-6)
 
 
@@ -413,23 +412,6 @@ def test_what_no_setting_can_solve():
 def read(path: Path) -> list[dict[str, str]]:
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
-
-
-def test_csv_holds_the_table(shaken, tmp_path):
-    shaken.to_csv(tmp_path / "trade.csv")
-    rows = read(tmp_path / "trade.csv")
-    assert len(rows) == len(shaken.rows)
-    for written, row in zip(rows, shaken.rows, strict=True):
-        assert written["method"] == row.setting.method
-        assert written["status"] == row.status
-        assert written["pareto"] == str(int(row.pareto))
-        if row.status == "completed":
-            assert float(written["error"]) == pytest.approx(row.error, rel=1e-5)
-            assert float(written["wall_time_s"]) == pytest.approx(row.seconds, rel=1e-5)
-    shaken.physics.to_csv(tmp_path / "physics.csv")
-    rows = read(tmp_path / "physics.csv")
-    assert [row["part"] for row in rows] == [effect.part for effect in shaken.physics.effects]
-    assert not list(tmp_path.glob("*.partial"))
 
 
 def test_tables_and_figure(shaken, capsys):

@@ -81,36 +81,36 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
         Rows; between two of them with the share of the way.
     """
     frame, of = result.frame, partial(between, rows)
-    found = []
-    for i, (name, one) in enumerate(frame.geometry.items()):
-        sections, length = frame.kinds[name].sections, one.clear
+    demands_of_ends = []
+    for i, (name, member) in enumerate(frame.geometry.items()):
+        sections, length = frame.kinds[name].sections, member.clear
         if sections is None:
             continue
         axial, turned = of(result.member_axial[:, i])[:, 0], of(result.chord_rotation[:, i])
         ends = of(np.column_stack((result.moment_from[:, i], result.moment_to[:, i]))).T
         sway = ends.sum(axis=0) / length
         for j, moments in enumerate(ends):
-            rotation, shear = turned[:, j], np.abs(one.shear(ends[0], ends[1], float(j)))
+            rotation, shear = turned[:, j], np.abs(member.shear(ends[0], ends[1], float(j)))
             for side in (1.0, -1.0):
                 row = int((side * rotation).argmax())
                 if side * rotation[row] <= 0:
                     continue
                 # Clockwise at the start stretches the right side, at the end the left one.
                 left = (side > 0) == bool(j)
-                across = one.axis[::-1] * (-1, 1) * (1 if left else -1)
+                across = member.axis[::-1] * (-1, 1) * (1 if left else -1)
                 near = sections[j] if left else sections[j].mirrored
                 far = sections[1 - j].mirrored if left else sections[1 - j]
                 most = max(1.5 * near.depth, 1e-9)
                 moved = abs(float(moments[row])) / max(abs(float(sway[row])), 1e-9)
-                found.append(
+                demands_of_ends.append(
                     _Demand(
-                        name, ("start", "end")[j], _face(across, one.upright),
-                        "column" if one.upright else "beam", length, near, far,
+                        name, ("start", "end")[j], _face(across, member.upright),
+                        "column" if member.upright else "beam", length, near, far,
                         float(axial[row]), abs(float(moments[row])), float(shear.max()),
                         abs(float(rotation[row])), min(max(moved, most), max(length, most)),
                     )
                 )  # fmt: skip
-    return [*found, *_joints(result, rows)]
+    return [*demands_of_ends, *_joints(result, rows)]
 
 
 def _face(way: Array, upright: bool) -> str:
@@ -131,7 +131,7 @@ def between(rows: Array, values: Array) -> Array:
         The array.
     """
     at = np.arange(len(values))
-    return np.column_stack([np.interp(rows, at, one) for one in np.atleast_2d(values.T)])
+    return np.column_stack([np.interp(rows, at, column) for column in np.atleast_2d(values.T)])
 
 
 def _joints(result: FrameResult, rows: Array) -> Iterator[_Demand]:
@@ -141,36 +141,40 @@ def _joints(result: FrameResult, rows: Array) -> Iterator[_Demand]:
     column above; the rotation is that of a panel beyond its yield.
     """
     frame, parts, of = result.frame, result.frame.parts, partial(between, rows)
-    panels = [one.member if one.group == "panel" else "" for one in parts.springs_of("flexure")]
+    springs = parts.springs_of("flexure")
+    panels = [spring.member if spring.group == "panel" else "" for spring in springs]
     for node, name in enumerate(parts.nodes):
         columns: list[tuple[int, int, MemberGeometry, Section]] = []
         beams: list[tuple[int, int, MemberGeometry, Section]] = []
-        for i, (member, one) in enumerate(frame.geometry.items()):
+        for i, (member, geometry) in enumerate(frame.geometry.items()):
             for j, section in enumerate(frame.kinds[member].sections or ()):
-                if (one.start, one.end)[j] == node:
-                    (columns if one.upright else beams).append((i, j, one, section))
+                if (geometry.start, geometry.end)[j] == node:
+                    (columns if geometry.upright else beams).append((i, j, geometry, section))
         if not columns or not beams:
             continue
-        column = max((one[3] for one in columns), key=lambda own: own.depth)
+        column = max((column[3] for column in columns), key=lambda drawn: drawn.depth)
         thrust, moment = np.zeros(rows.size), np.zeros(rows.size)
-        for i, j, one, section in beams:
+        for i, j, geometry, section in beams:
             ends = of(result.moment_from[:, i])[:, 0], of(result.moment_to[:, i])[:, 0]
-            share = max(0.5 * column.depth - one.rigid[j], 0.0) / one.clear
-            faced = one.moment(*ends, abs(j - share)) * (1.0 - 2.0 * j)
+            share = max(0.5 * column.depth - geometry.rigid[j], 0.0) / geometry.clear
+            faced = geometry.moment(*ends, abs(j - share)) * (1.0 - 2.0 * j)
             arm = 0.9 * min(section.effective_depth, section.mirrored.effective_depth)
             thrust, moment = thrust + faced / arm, moment + faced
         axial = np.zeros(rows.size)
-        for i, _, one, _ in columns:
-            if max(parts.y[one.start], parts.y[one.end]) > parts.y[node]:
+        for i, _, geometry, _ in columns:
+            if max(parts.y[geometry.start], parts.y[geometry.end]) > parts.y[node]:
                 ends = of(result.moment_from[:, i])[:, 0], of(result.moment_to[:, i])[:, 0]
-                thrust, axial = thrust + one.shear(*ends, 0.5), of(result.member_axial[:, i])[:, 0]
+                thrust, axial = (
+                    thrust + geometry.shear(*ends, 0.5),
+                    of(result.member_axial[:, i])[:, 0],
+                )
         turned = math.nan
         if name in panels:
             turns = of(result.springs["rotation"][:, panels.index(name)])[:, 0]
             spring = parts.springs_of("flexure")[panels.index(name)]
             yields = [m.deformation for m in frame.landmarks[spring] if m.name == "yield"]
             turned = max(float(np.abs(turns).max()) - min(yields, default=0.0), 0.0)
-        beam = max((one[3] for one in beams), key=lambda own: own.depth)
+        beam = max((beam[3] for beam in beams), key=lambda drawn: drawn.depth)
         row = int(np.abs(thrust).argmax())
         yield _Demand(
             name, "panel" if name in panels else "joint", "",
@@ -237,7 +241,11 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
             a, b, io, _ = asce_41.beam_rotations(bars, stress, conforming=sound)
             limits, source = (io, a, b), f"table 10-7 i {'C' if sound else 'NC'}"
     return _Limits(
-        plastic, yielding, tuple(knowledge * one for one in limits), knowledge * strength, source
+        plastic,
+        yielding,
+        tuple(knowledge * limit for limit in limits),
+        knowledge * strength,
+        source,
     )
 
 
@@ -360,13 +368,13 @@ class Assessment(Tabular):
         def number(exceeds: Callable[[dict[str, Any]], bool]) -> int:
             return len({(row["member"], row["end"]) for row in self.rows if exceeds(row)})
 
-        found = {
+        numbers = {
             name: number(lambda row, key=f"ratio_{name}": row[key] > 1.0)  # type: ignore[misc]
             for name in self.levels
         }
-        found["shear"] = number(lambda row: row["ratio_shear"] > 1.0)
-        found["not evaluated"] = number(lambda row: row["status"] != "evaluated")
-        return found
+        numbers["shear"] = number(lambda row: row["ratio_shear"] > 1.0)
+        numbers["not evaluated"] = number(lambda row: row["status"] != "evaluated")
+        return numbers
 
     def accepted(self, level: str | None = None) -> bool:
         """Return whether all ends are evaluated, and none exceeds a level or its shear strength."""
@@ -378,15 +386,15 @@ class Assessment(Tabular):
 
         What exceeds its shear strength exceeds all.
         """
-        found: dict[tuple[str, str], int] = {}
+        highest: dict[tuple[str, str], int] = {}
         for row in self.rows:
             exceeded = sum(row[f"ratio_{name}"] > 1.0 for name in self.levels)
             if row["ratio_shear"] > 1.0:
                 exceeded = len(self.levels)
             exceeded = exceeded if row["status"] == "evaluated" else -1
             at = row["member"], row["end"]
-            found[at] = max(found.get(at, -1), exceeded)
-        return found
+            highest[at] = max(highest.get(at, -1), exceeded)
+        return highest
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -413,8 +421,8 @@ class Assessment(Tabular):
         }
         ends = len(sheared)
         most = math.inf if self.displacement is None else abs(self.displacement)
-        failures = (one for one in self.result.events if one.name == FAILS)
-        if not ends or any(abs(one.displacement) <= most for one in failures):
+        failures = (failure for failure in self.result.events if failure.name == FAILS)
+        if not ends or any(abs(failure.displacement) <= most for failure in failures):
             return ()
         annex = " (A.12: over gamma_el, with a fifth of the concrete from L_V = 5 h on)"
         annex = "" if self.code == "asce_41" else annex
@@ -518,16 +526,16 @@ def assess(
     if detailed != 1.0 and code != "en_1998_3":
         raise InputError("assess: detailing is for 'en_1998_3'; leave it out")
     place, rows = rows_at(result, at)
-    found = demands(result, rows)
-    if not found:
+    ends = demands(result, rows)
+    if not ends:
         raise InputError(
             "assess: the members of the frame have no sections; make it of them, as by "
             "rbsdem.Frame.grid(columns=section, ...)"
         )
     levels = LEVELS[code]
-    own = _given(limits, found, levels)
+    stated = _given(limits, ends, levels)
     walls = {name for name, kind in result.frame.kinds.items() if _is_wall(kind)}
-    without = sorted({d.member for d in found} & walls - set(own))
+    without = sorted({d.member for d in ends} & walls - set(stated))
     if without:
         raise InputError(
             f"assess: {', '.join(without)}: no limits of walls are known here that a public source "
@@ -535,9 +543,9 @@ def assess(
         )
     if code == "asce_41":
         # Joints are judged by their rotation, and a rigid one has none.
-        found = [d for d in found if d.end != "joint"]
+        ends = [d for d in ends if d.end != "joint"]
     made = []
-    for d in found:
+    for d in ends:
         status = "evaluated"
         bound = _Limits(d.rotation, math.nan, (math.nan,) * len(levels), math.nan, "")
         try:
@@ -545,10 +553,10 @@ def assess(
                 bound = _asce_41(d, kappa) if code == "asce_41" else _en_1998_3(d, first, detailed)
         except InputError as error:
             status = str(error)
-        if d.member in own:
-            bound = replace(bound, rotations=own[d.member], source="limits that were given")
+        if d.member in stated:
+            bound = replace(bound, rotations=stated[d.member], source="limits that were given")
             status = "evaluated"
-        ratios = [math.inf if one == 0 else bound.demand / one for one in bound.rotations]
+        ratios = [math.inf if limit == 0 else bound.demand / limit for limit in bound.rotations]
         sheared = d.shear / bound.shear
         made.append(
             {
@@ -562,8 +570,11 @@ def assess(
                 "rotation_rad": d.rotation,
                 "yield_rad": bound.yielding,
                 "demand_rad": bound.demand,
-                **{f"limit_{n}_rad": one for n, one in zip(levels, bound.rotations, strict=True)},
-                **{f"ratio_{n}": one for n, one in zip(levels, ratios, strict=True)},
+                **{
+                    f"limit_{n}_rad": limit
+                    for n, limit in zip(levels, bound.rotations, strict=True)
+                },
+                **{f"ratio_{n}": ratio for n, ratio in zip(levels, ratios, strict=True)},
                 "shear_strength_N": bound.shear,
                 "ratio_shear": sheared,
                 "governed_by": "shear" if sheared > np.nan_to_num(ratios[-1]) else "rotation",
@@ -575,16 +586,16 @@ def assess(
 
 
 def _is_wall(kind: FrameMember) -> bool:
-    return kind.sections is not None and any(one.shape == "wall" for one in kind.sections)
+    return kind.sections is not None and any(section.shape == "wall" for section in kind.sections)
 
 
 def _given(
-    limits: Any, found: Sequence[_Demand], levels: tuple[str, ...]
+    limits: Any, ends: Sequence[_Demand], levels: tuple[str, ...]
 ) -> dict[str, tuple[float, ...]]:
     """Return the limits that were given, by names of members and nodes."""
     # A rigid node has no rotation.
-    known = dict.fromkeys(d.member for d in found if not math.isnan(d.rotation))
-    own: dict[str, tuple[float, ...]] = {}
+    known = dict.fromkeys(d.member for d in ends if not math.isnan(d.rotation))
+    stated: dict[str, tuple[float, ...]] = {}
     if not isinstance(limits or {}, Mapping):
         raise InputError(f"assess: limits = {_arguments.shown(limits)} must be a mapping of names")
     for name, values in (limits or {}).items():
@@ -594,14 +605,14 @@ def _given(
                 f"assess: limits of {name!r} = {_arguments.shown(values)} must be "
                 f"{len(levels)} ascending rotations [rad], of {', '.join(levels)}"
             )
-        matching = [one for one in known if fnmatchcase(one, str(name))]
+        matching = [part for part in known if fnmatchcase(part, str(name))]
         if not matching:
             raise InputError(
                 f"assess: limits of {name!r}: no member with sections and no node with a panel has "
                 "this name; give one, or a pattern, as 'C-*-1' for the columns of a storey"
             )
-        own |= dict.fromkeys(matching, tuple(rotations.tolist()))
-    return own
+        stated |= dict.fromkeys(matching, tuple(rotations.tolist()))
+    return stated
 
 
 def rows_at(result: FrameResult, at: Any) -> tuple[float | None, Array]:

@@ -131,7 +131,7 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
         If the section has no bars near both faces, or a number is refused.
     """
     c = _Drawn(section, quantities(section, height, axial_load))
-    found = []
+    rows = []
     for row in _package.rows("code_values.csv"):
         walls = section.shape == "wall"
         if (row["covers"] == "wall") != walls or not _COVERS[row["covers"]](c.q):
@@ -140,8 +140,8 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
         if math.isfinite(value):
             source = (c.q.round and row["source_of_circles"]) or row["source"]
             known = row["unit"], source, row["confirmed"] == "1"
-            found.append(CodeValue(row["name"], row["meaning"], value, *known))
-    return CodeValues(found, c.q)
+            rows.append(CodeValue(row["name"], row["meaning"], value, *known))
+    return CodeValues(rows, c.q)
 
 
 @dataclass(frozen=True)
@@ -191,12 +191,12 @@ class _Drawn:
         It is a function of length, width of the zone in compression and depth of the neutral axis
         [m], and of the moment [N m].
         """
-        found = []
+        drifts = []
         for section in (self.section, self.section.mirrored):
             # The zone in compression is at y < 0.
             edge = section.part(1e-3 * section.depth)[0] / (1e-3 * section.depth)
-            found.append(drift(section.depth, edge, *nominal_point(section, self.q.load)))
-        return min(found)
+            drifts.append(drift(section.depth, edge, *nominal_point(section, self.q.load)))
+        return min(drifts)
 
     def wall_drift(self, length: float, width: float, axis: float, moment: float) -> float:
         """Return the drift capacity of a wall by ACI 318-19."""
@@ -366,15 +366,15 @@ def backbones(values: CodeValues) -> list[Backbone]:
         drift, share = np.array([(0.0, 0.0), *points]).T
         return Backbone(name, source, drift, moment * share)
 
-    found = []
+    lines = []
     if "asce_41.a" in names:
         at, c = yield_drift(values, "asce_41.stiffness"), values["asce_41.c"]
         a, b = at + values["asce_41.a"], at + values["asce_41.b"]
         points = [(at, 1.0), (a, 1.0), (a, c), (b, c), (b, 0.0)]
-        found.append(line("ASCE 41", "ASCE 41-17, chapter 10 (ACI 369.1)", *points))
+        lines.append(line("ASCE 41", "ASCE 41-17, chapter 10 (ACI 369.1)", *points))
     if "ec_8.ultimate" in names:
         at, end = values["ec_8.yield"], values["ec_8.ultimate"]
-        found.append(
+        lines.append(
             line("EC 8-3", "EN 1998-3:2005, A.10b, A.1", (at, 1.0), (end, 1.0), (end, 0.8))
         )
     if "elwood.shear_drift" in names:
@@ -383,14 +383,14 @@ def backbones(values: CodeValues) -> list[Backbone]:
         if at < shear < axial:
             points = [(at, 1.0), (shear, 1.0), (axial, 0.0)]
             source = "Elwood, Eberhard 2009; Elwood, Moehle 2005"
-            found.append(line("Elwood", source, *points))
+            lines.append(line("Elwood", source, *points))
     if "haselton.cap" in names:
         at = yield_drift(values, "haselton.stiffness")
         cap, hard = at + values["haselton.cap"], values["haselton.hardening"]
         end = cap + values["haselton.post_cap"]
         source = "Haselton 2008, 2016, one push"
-        found.append(line("Haselton", source, (at, 1.0), (cap, hard), (end, 0.0)))
-    return found
+        lines.append(line("Haselton", source, (at, 1.0), (cap, hard), (end, 0.0)))
+    return lines
 
 
 # ---- the comparison ------------------------------------------------------------------------------
@@ -476,13 +476,13 @@ def _check_same(q: Quantities, column: Column) -> None:
     load = column.axial_load
     if column.kinematics == "small" and load == 0:
         load = q.load  # It does nothing there, and need not be stated.
-    found = replace(q, span=1e3 * span, load=load)
+    drawn = replace(q, span=1e3 * span, load=load)
     if isinstance(column, LayeredColumn) and column.drawing is not None:
-        found = quantities(column.drawing.section, span, load)
+        drawn = quantities(column.drawing.section, span, load)
     other = [
         f"{name} = {theirs:g}, here {ours:g}"
         for name, ours in vars(q).items()
-        if not (ours == (theirs := getattr(found, name)) or _near(ours, theirs))
+        if not (ours == (theirs := getattr(drawn, name)) or _near(ours, theirs))
     ]
     if other:
         raise InputError(
@@ -491,8 +491,8 @@ def _check_same(q: Quantities, column: Column) -> None:
         )
 
 
-def _near(one: float, other: float) -> bool:
-    return math.isclose(one, other, rel_tol=1e-9) or (math.isnan(one) and math.isnan(other))
+def _near(first: float, other: float) -> bool:
+    return math.isclose(first, other, rel_tol=1e-9) or (math.isnan(first) and math.isnan(other))
 
 
 def _loop(curve: Curve) -> tuple[Array, Array]:
@@ -501,20 +501,20 @@ def _loop(curve: Curve) -> tuple[Array, Array]:
 
 
 def _stated(
-    found: CodeComparison, value: Callable[[CodeComparison, str], float], keys: dict[str, str]
+    comparison: CodeComparison, value: Callable[[CodeComparison, str], float], keys: dict[str, str]
 ) -> dict[str, float]:
     """Return a quantity by the sources that cover the column."""
     stated = {}
     for source, key in keys.items():
         with suppress(InputError):
-            stated[source] = value(found, key)
+            stated[source] = value(comparison, key)
     return stated
 
 
-def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
+def _measured(comparison: CodeComparison) -> dict[str, dict[str, float]]:
     """Return the quantities of the test and of the model."""
-    result, height = found.result, found.result.column.height
-    loops = {} if found.test is None else {"test": found.test}
+    result, height = comparison.result, comparison.result.column.height
+    loops = {} if comparison.test is None else {"test": comparison.test}
     loops["model"] = loop_pair(result, "the model")
     names = ("stiffness", "yield_drift", "largest_force", "strength_loss")
     rows: dict[str, dict[str, float]] = {name: {} for name in names}
@@ -546,34 +546,36 @@ def _idealised(d: Array, f: Array) -> float:
     return math.nan
 
 
-def _value(found: CodeComparison, name: str) -> float:
-    return found.values[name]
+def _value(comparison: CodeComparison, name: str) -> float:
+    return comparison.values[name]
 
 
-def _at_yield(found: CodeComparison, name: str) -> float:
+def _at_yield(comparison: CodeComparison, name: str) -> float:
     """Return the drift at yield, by a value or by a share of the gross stiffness."""
-    return yield_drift(found.values, name) if "stiffness" in name else found.values[name]
+    return yield_drift(comparison.values, name) if "stiffness" in name else comparison.values[name]
 
 
-def _secant(found: CodeComparison, name: str) -> float:
+def _secant(comparison: CodeComparison, name: str) -> float:
     """Return the secant stiffness to yield [N/m]."""
-    drift = _at_yield(found, name)
-    force = found.values["yield.shear"] - found.leaning * drift
-    return force / (drift * found.result.column.height)
+    drift = _at_yield(comparison, name)
+    force = comparison.values["yield.shear"] - comparison.leaning * drift
+    return force / (drift * comparison.result.column.height)
 
 
-def _largest(found: CodeComparison, name: str) -> float:
-    line = next((each for each in found.backbones if each.name == name), None)
-    return math.nan if line is None else float(line.force(found.span, found.leaning).max())
+def _largest(comparison: CodeComparison, name: str) -> float:
+    line = next((each for each in comparison.backbones if each.name == name), None)
+    return (
+        math.nan if line is None else float(line.force(comparison.span, comparison.leaning).max())
+    )
 
 
-def _loss(found: CodeComparison, name: str) -> float:
-    return drift_at_loss(found.values, name)
+def _loss(comparison: CodeComparison, name: str) -> float:
+    return drift_at_loss(comparison.values, name)
 
 
-def _axial_failure(found: CodeComparison, name: str) -> float:
-    turned = yield_drift(found.values, "asce_41.stiffness") if name == "asce_41.b" else 0.0
-    return turned + found.values[name]
+def _axial_failure(comparison: CodeComparison, name: str) -> float:
+    turned = yield_drift(comparison.values, "asce_41.stiffness") if name == "asce_41.b" else 0.0
+    return turned + comparison.values[name]
 
 
 _YIELD = {

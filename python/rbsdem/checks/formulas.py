@@ -74,8 +74,8 @@ def ec_8_shear_resistance(q: Quantities, plastic_ductility: float = 0.0) -> floa
     strut = (q.depth - yield_point(q)[2] * q.d) / (2.0 * q.span)
     strut *= min(q.load, 0.55 * area * q.fc)
     ties = q.tie_area / q.spacing * (q.d - q.d2) * q.fyt
-    given = strut, area, q.steel_ratio, q.slenderness, q.fc, ties
-    return en_1998.shear_resistance(*given, plastic_ductility)
+    sizes = strut, area, q.steel_ratio, q.slenderness, q.fc, ties
+    return en_1998.shear_resistance(*sizes, plastic_ductility)
 
 
 def _nu(q: Quantities) -> float:
@@ -130,7 +130,7 @@ def yield_point(q: Quantities, modulus: float | None = None) -> tuple[float, flo
     area = q.width * q.d
     rho, rho2, web = (each / area for each in (q.tension, q.compression, q.web))
     n, cover = q.es / ec, q.d2 / q.d
-    found = []
+    points = []
     for steel in (True, False):
         load = q.load / (area * q.fy) if steel else -q.load / (1.8 * n * area * q.fc)
         a = rho + rho2 + web + load
@@ -139,8 +139,8 @@ def yield_point(q: Quantities, modulus: float | None = None) -> tuple[float, flo
             b += load
         deep = math.sqrt((n * a) ** 2 + 2.0 * n * b) - n * a
         strain = q.fy / (q.es * (1.0 - deep) * q.d) if steel else 1.8 * q.fc / (ec * deep * q.d)
-        found.append((strain if strain > 0 else math.inf, deep))
-    curvature, deep = min(found)
+        points.append((strain if strain > 0 else math.inf, deep))
+    curvature, deep = min(points)
     concrete = 0.5 * ec * deep**2 * (0.5 * (1.0 + cover) - deep / 3.0)
     bars = (1.0 - deep) * rho + (deep - cover) * rho2 + web * (1.0 - cover) / 6.0
     moment = q.width * q.d**3 * curvature * (concrete + 0.5 * q.es * (1.0 - cover) * bars)

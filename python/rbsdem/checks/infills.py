@@ -44,22 +44,22 @@ def infills(result: FrameResult) -> DataFrame:
         if event.group == "infill":
             reached.setdefault(event.member, []).append(event.name)
     rows: list[dict[str, Any]] = []
-    for one in frame.infilled:
-        at = [frame.parts.members.index(name) for name in one.struts]
+    for infill in frame.infilled:
+        at = [frame.parts.members.index(name) for name in infill.struts]
         # The strut that rises to the right is pressed by a push to the left.
-        forces = one.slope * (result.member_axial[:, at] @ np.array([-1.0, 1.0]))
+        forces = infill.slope * (result.member_axial[:, at] @ np.array([-1.0, 1.0]))
         row = int(np.abs(forces).argmax())
-        shear = float(result.storey_shear[row, one.storey - 1])
-        states = [name for strut in one.struts for name in reached.get(strut, ())]
+        shear = float(result.storey_shear[row, infill.storey - 1])
+        states = [name for strut in infill.struts for name in reached.get(strut, ())]
         order = ("residual", "cap", "cracking")
-        sides = [f"C-{line}-{one.storey}" for line in (one.bay, one.bay + 1)]
+        sides = [f"C-{line}-{infill.storey}" for line in (infill.bay, infill.bay + 1)]
         strengths = [_shear_strength(frame.kinds[name]) for name in sides]
         weaker = int(np.nanargmin(strengths)) if not np.isnan(strengths).all() else 0
         largest = abs(float(forces[row]))
         rows.append({
-            "bay": one.bay,
-            "storey": one.storey,
-            "strength_N": one.force,
+            "bay": infill.bay,
+            "storey": infill.storey,
+            "strength_N": infill.force,
             "largest_force_N": largest,
             "share_of_storey_shear": float(forces[row]) / shear if shear else np.nan,
             "state": next((name for name in order if name in states), ""),
@@ -73,4 +73,4 @@ def infills(result: FrameResult) -> DataFrame:
 def _shear_strength(kind: FrameMember) -> float:
     """Return the largest force of the weakest shear spring of a column; NaN without one [N]."""
     springs = [spring for _, spring in kind._springs("shear")]
-    return min((float(getattr(one, "f_cap", np.nan)) for one in springs), default=np.nan)
+    return min((float(getattr(spring, "f_cap", np.nan)) for spring in springs), default=np.nan)

@@ -325,16 +325,15 @@ class Capacity(Tabular):
         top = int(curve.force.argmax())
         gone = np.flatnonzero(curve.force[top:] <= 0)
         last = top + int(gone[0]) if gone.size else curve.force.size
-        object.__setattr__(self, "displacement", curve.displacement[:last])
-        object.__setattr__(self, "force", curve.force[:last])
+        _arguments.put(self, displacement=curve.displacement[:last], force=curve.force[:last])
         for name in ("gamma", "modal_mass", "total_mass"):
             value = _arguments.number(getattr(self, name), f"Capacity: {name}", above=0.0)
-            object.__setattr__(self, name, value)
+            _arguments.put(self, **{name: value})
         if math.isnan(self.stiffness):
-            object.__setattr__(self, "stiffness", self.slope)
+            _arguments.put(self, stiffness=self.slope)
         if math.isnan(self.period):
             slow = 2.0 * math.pi * math.sqrt(self.modal_mass / self.stiffness)
-            object.__setattr__(self, "period", slow)
+            _arguments.put(self, period=slow)
         share = self.force.max() / (STANDARD_GRAVITY * self.total_mass)
         for what, value, least, most in (
             (f"a period of {self.period:.3g} s", self.period, _SHORTEST, _LONGEST),
@@ -455,7 +454,7 @@ def asce_41(
     """
     site = _arguments.choice(site_class, "target: site_class", codes.SITES)
     first = curve.gamma if c0 is None else _arguments.number(c0, "target: c0", above=0.0)
-    found: dict[str, float] = {}
+    coefficients: dict[str, float] = {}
 
     def demand(end: float) -> tuple[float, Idealisation, float, float]:
         lines = curve.idealise("asce_41", end)
@@ -463,12 +462,14 @@ def asce_41(
         period = curve.period * math.sqrt(curve.stiffness / lines.stiffness)
         sa = spectrum.sa(period)
         usual = codes.mass_factor(curve.storeys, period)
-        found["C_m"] = usual if cm is None else _arguments.number(cm, "target: cm", above=0.0)
-        strength = sa * found["C_m"] * curve.total_mass / lines.yield_force
+        coefficients["C_m"] = (
+            usual if cm is None else _arguments.number(cm, "target: cm", above=0.0)
+        )
+        strength = sa * coefficients["C_m"] * curve.total_mass / lines.yield_force
         yields = 1.0 if elastic else strength
-        found["C_1"] = codes.inelastic_factor(yields, period, site)
-        found["C_2"] = codes.pinching_factor(yields, period)
-        reached = first * found["C_1"] * found["C_2"] * spectrum.sd(period)
+        coefficients["C_1"] = codes.inelastic_factor(yields, period, site)
+        coefficients["C_2"] = codes.pinching_factor(yields, period)
+        reached = first * coefficients["C_1"] * coefficients["C_2"] * spectrum.sd(period)
         if elastic:
             strength = reached / curve.elastic
         return reached, lines, period, strength
@@ -482,7 +483,7 @@ def asce_41(
             f"mu_strength = {strength:.3g} is above mu_max = {limit:.3g}: a nonlinear static "
             "procedure is not allowed (ASCE 41-17, 7.3.2.1); look at records."
         )
-    factors = {"C_0": first, **found, "mu_max": limit, "alpha_1": lines.post_yield_ratio}
+    factors = {"C_0": first, **coefficients, "mu_max": limit, "alpha_1": lines.post_yield_ratio}
     named = "asce_41", "ASCE 41-17, 7.4.3.3.2", curve, spectrum
     return Target(*named, target, lines, period, strength, factors | softening, tuple(warnings))
 
@@ -575,7 +576,7 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         once, up to the largest base shear.
     """
     most = curve.peak
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
 
     def demand(end: float) -> float:
         lines = curve.idealise("ec_8", end)
@@ -584,7 +585,7 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         sa, elastic = spectrum.sa(period), spectrum.sd(period)
         strength = sa * curve.modal_mass / force
         reached = target_of_one_mass(elastic, strength, period, spectrum.corner)
-        found.update({"T*": period, "q_u": strength, "d_et*": elastic, "d_t*": reached})
+        values.update({"T*": period, "q_u": strength, "d_et*": elastic, "d_t*": reached})
         return curve.gamma * reached
 
     if _arguments.boolean(iterate, "target: iterate"):
@@ -593,11 +594,11 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         target, end = demand(most), most
     demand(end)
     lines = curve.idealise("ec_8", end)
-    factors = {"Gamma": curve.gamma, "m*": curve.modal_mass, **found, "T_C": spectrum.corner}
+    factors = {"Gamma": curve.gamma, "m*": curve.modal_mass, **values, "T_C": spectrum.corner}
     named = "en_1998", "EN 1998-1:2004, annex B", curve, spectrum
     warnings = ("The lines are drawn up to the target displacement.",) if iterate else ()
     ductility = target / lines.yield_displacement
-    return Target(*named, target, lines, found["T*"], ductility, factors, warnings)
+    return Target(*named, target, lines, values["T*"], ductility, factors, warnings)
 
 
 def equivalent(ductility: float) -> tuple[float, float]:
@@ -630,7 +631,7 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
     spectrum : DesignSpectrum
         The demand, of 5 %.
     """
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
 
     def demand(end: float) -> float:
         lines = curve.idealise("asce_41", end)
@@ -638,18 +639,18 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
         longer, more = equivalent(end / lines.yield_displacement)
         period, damping = slow * longer, 0.05 + 0.01 * more
         factor = damping_factor(damping)
-        found.update({"T_0": slow, "T_eff": period, "beta_eff": damping, "B": factor})
+        values.update({"T_0": slow, "T_eff": period, "beta_eff": damping, "B": factor})
         return curve.gamma * spectrum.sd(period) / factor
 
     target, end = _meeting(curve, demand, curve.largest, furthest=True)
     demand(end)
     lines = curve.idealise("asce_41", end)
     secant = curve.force_at(end) / end
-    found["T_sec"] = 2.0 * math.pi * math.sqrt(curve.modal_mass / secant)
+    values["T_sec"] = 2.0 * math.pi * math.sqrt(curve.modal_mass / secant)
     warnings = []
-    if not 0.2 < found["T_0"] < 2.0:
-        warnings.append(f"T_0 = {found['T_0']:.3g} s is outside the fit of FEMA 440, 0.2 to 2 s.")
+    if not 0.2 < values["T_0"] < 2.0:
+        warnings.append(f"T_0 = {values['T_0']:.3g} s is outside the fit of FEMA 440, 0.2 to 2 s.")
     named = "capacity_spectrum", "FEMA 440, chapter 6", curve, spectrum
-    factors = {"Gamma": curve.gamma, **found, "alpha": lines.post_yield_ratio}
+    factors = {"Gamma": curve.gamma, **values, "alpha": lines.post_yield_ratio}
     ductility = target / lines.yield_displacement
-    return Target(*named, target, lines, found["T_eff"], ductility, factors, tuple(warnings))
+    return Target(*named, target, lines, values["T_eff"], ductility, factors, tuple(warnings))

@@ -32,8 +32,7 @@ from rbsdem.many.judgement import asked, checked, judge
 from rbsdem.many.runs import NAMES
 from rbsdem.many.store import store_status
 from rbsdem.methods.ladder import OF_SETTING
-from rbsdem.methods.physics import Physics
-from rbsdem.methods.study import compare_methods
+from rbsdem.methods.study import Physics, compare_methods
 from rbsdem.motions.motion import GroundMotion, synthetic
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.output import many as ensemble_figures
@@ -102,8 +101,8 @@ def on_springs(program: str, words: Sequence[str], path: str) -> int:
     except RbsdemError as error:
         lines = str(error).splitlines()
         if "--json" in words:
-            found = [{"line": None, "message": line} for line in lines]
-            print(json.dumps({"case": path, "errors": found, "notes": []}))
+            errors = [{"line": None, "message": line} for line in lines]
+            print(json.dumps({"case": path, "errors": errors, "notes": []}))
         else:
             sys.stderr.writelines(f"rbsdem: {line}\n" for line in lines)
         return 2 if isinstance(error, InputError) else 1
@@ -421,7 +420,6 @@ def ida(
     part = None if shard is None else _part(shard)
     store, files = None, []
     if out is not None:
-        extra("pyarrow.parquet")
         files = claim_folder(out, [*_OF_IDA, "ida.parquet"] if parquet else _OF_IDA)
         store = out / "store"
     watched = [name for name in limits if name in WATCHED]
@@ -570,7 +568,7 @@ def _write(
     runs, shares, fitted, *figures = files
     analysis.runs.to_csv(runs)
     level, fractiles = analysis.fractiles()
-    names = [f"{analysis.runs.drift}_{share}" for share in (16, 50, 84)]
+    names = [f"{analysis.runs.drift_measure}_{share}" for share in (16, 50, 84)]
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
     save_frame(data_frame(values), shares)
     save_frame(frame, fitted)
@@ -636,13 +634,13 @@ def report(
     \b
     Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
     """
-    found, file = read_case(case), output or case.with_suffix(".html")
+    model, file = read_case(case), output or case.with_suffix(".html")
     if output is None:
         refuse_other_page(file)
-    if isinstance(found.column, Frame):
-        title = title or found.title
+    if isinstance(model.column, Frame):
+        title = title or model.title
         units: Any = tuple(paper.split(","))
-        _tell_files(write_record(found.run(), file, title=title, units=units, **head))
+        _tell_files(write_record(model.run(), file, title=title, units=units, **head))
         return 0
     answers = Answers(None if tests is None else tests_of(tests))
     start = start_of(case, answers)
@@ -668,9 +666,9 @@ def start_of(path: Path, server: Answers) -> Mapping[str, Any]:
         As `rbsdem.read_case`.
     """
     case = read_case(path)
-    found = opened(path.read_text(encoding="utf-8", errors="replace"), server.keep_record)
-    if "faults" in found:  # it names files
-        found = opened(case.to_namelist(), server.keep_record)
-    if "faults" in found:
-        raise InputError("\n".join(fault["text"] for fault in found["faults"]))
-    return {**found["state"], "title": case.title}
+    answer = opened(path.read_text(encoding="utf-8", errors="replace"), server.keep_record)
+    if "faults" in answer:  # it names files
+        answer = opened(case.to_namelist(), server.keep_record)
+    if "faults" in answer:
+        raise InputError("\n".join(fault["text"] for fault in answer["faults"]))
+    return {**answer["state"], "title": case.title}

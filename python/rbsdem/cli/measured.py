@@ -70,21 +70,21 @@ def peer(
     tests = chosen(table, section, failure, only)
     if not hasattr(tests[0], by):
         raise InputError(f"--by {by} is no property, as failure_mode, section, series")
-    found = run_predictions(tests, model, bands=bands, limit_states=limit_states)
+    predictions = run_predictions(tests, model, bands=bands, limit_states=limit_states)
     if out is not None:
-        save_frame(scores(found), out)
+        save_frame(scores(predictions), out)
     terminal = console(168)
     if only and not quiet:
-        terminal.print(measured.tests_table(found))
+        terminal.print(measured.tests_table(predictions))
         terminal.print()
-    terminal.print(measured.summary_table(score_summary(found, by)))
-    print(f"\nModel {found[0].model}: {len(found)} tests")
+    terminal.print(measured.summary_table(score_summary(predictions, by)))
+    print(f"\nModel {predictions[0].model}: {len(predictions)} tests")
     left = [] if only else [row.name for row in table if row.path is None]
-    left += [row.specimen.name for row in found if row.status == "no history"]
+    left += [row.specimen.name for row in predictions if row.status == "no history"]
     if left:
         names = ", ".join([*left[:3], *(["..."] if left[3:] else [])])
         print(f"{len(left)} of the table have no history in the folder, so no score: {names}")
-    return 0 if all(row.status == "completed" for row in found) else 1
+    return 0 if all(row.status == "completed" for row in predictions) else 1
 
 
 def chosen(
@@ -95,12 +95,12 @@ def chosen(
     Tests asked for by name need not have a history.
     """
     if only:
-        found: dict[str, Specimen] = {}
+        meant: dict[str, Specimen] = {}
         for name in only:
             several = [row for row in table if _is_meant(row, name)]
             # If there is none, this raises an error that names the nearest.
-            found |= {row.name: row for row in several or [table[name]]}
-        return Specimens(row for row in table if row.name in found)
+            meant |= {row.name: row for row in several or [table[name]]}
+        return Specimens(row for row in table if row.name in meant)
     tests = table.with_history()
     if not tests:
         raise InputError("the folder has no history of any test of its table; put csv or txt there")
@@ -241,23 +241,23 @@ def verify(names: tuple[str, ...], every: bool, output: str | None) -> int:
 
     Exit codes: 0 all are inside the printed digits or explained, 1 some are not, 2 no such problem.
     """
-    found = solve(list(names) or None)
-    console(160).print(_table(found if every else found.worst()))
-    print(found)
+    verification = solve(list(names) or None)
+    console(160).print(_table(verification if every else verification.worst()))
+    print(verification)
     if output is not None:
-        found.to_csv(output)
+        verification.to_csv(output)
         print(f"wrote {output}")
-    return 0 if found.holds else 1
+    return 0 if verification.holds else 1
 
 
-def _table(found: Verification) -> Table:
+def _table(verification: Verification) -> Table:
     """Return a table whose texts are folded and whose numbers are whole."""
     made = Table(box=rich.box.SIMPLE_HEAD, show_edge=False, padding=(0, 1))
     numbers = ("printed", "rbsdem", "difference")
-    rows = found.to_pandas()
+    rows = verification.to_pandas()
     for name in rows:
         whole = name in numbers
         made.add_column(name, justify="right" if whole else "left", no_wrap=whole)
-    for row, one in zip(rows.itertuples(index=False), found.comparisons, strict=True):
-        made.add_row(*map(plain, row), style=None if one.holds else "red")
+    for row, comparison in zip(rows.itertuples(index=False), verification.comparisons, strict=True):
+        made.add_row(*map(plain, row), style=None if comparison.holds else "red")
     return made

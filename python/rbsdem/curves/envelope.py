@@ -89,14 +89,14 @@ def _largest_beyond(
     inside = x >= least
     near = inside.nonzero()[0]
     row = near[y[near].argmax()]
-    found = float(row), float(x[row]), float(y[row])
+    largest = float(row), float(x[row]), float(y[row])
     # Where the curve comes to that displacement or leaves it, the force may be more than at a row.
     for row in (inside[1:] != inside[:-1]).nonzero()[0].tolist():
         share = float((least - x[row]) / (x[row + 1] - x[row]))
         there = float(y[row] + share * (y[row + 1] - y[row]))
-        if there > found[2]:
-            found = row + share, least, there
-    return first + found[0], found[1], found[2]
+        if there > largest[2]:
+            largest = row + share, least, there
+    return first + largest[0], largest[1], largest[2]
 
 
 def strength_loss(displacement: ArrayLike, force: ArrayLike, *, share: float = 0.2) -> float:
@@ -150,7 +150,7 @@ def strength_loss_point(
         As `strength_loss`.
     """
     _arguments.number(share, "share", above=0, below=1)
-    found = (math.nan, math.nan)
+    point = (math.nan, math.nan)
     d, f = columns(("displacement", "force"), displacement, force, least=0)
     turns = turning_points(d)
     sides = [_envelope(side * d, side * f, turns) for side in (1, -1)]
@@ -172,9 +172,9 @@ def strength_loss_point(
         part = (y[at - 1] - left) / (y[at - 1] - lower)
         apart = number[at] - number[at - 1]
         found_row = number[at - 1] + part * apart if apart <= 1 else number[at]
-        if not found[0] <= found_row:
-            found = float(found_row), float(x[at - 1] + part * (x[at] - x[at - 1]))
-    return found
+        if not point[0] <= found_row:
+            point = float(found_row), float(x[at - 1] + part * (x[at] - x[at - 1]))
+    return point
 
 
 def _still_reached(force: Array, half_cycle: np.ndarray) -> Array:
@@ -506,10 +506,10 @@ def _apart(x: Array, y: Array, at: float, force: float, end: float, last: float)
     """Return the area between an envelope and two lines, in size [J]."""
     u = np.union1d(x, at)
     off = np.interp(u, x, y) - np.interp(u, [0.0, at, end], [0.0, force, last])
-    one, two = np.abs(off[:-1]), np.abs(off[1:])
-    both = np.maximum(one + two, np.finfo(float).tiny)
+    before, after = np.abs(off[:-1]), np.abs(off[1:])
+    both = np.maximum(before + after, np.finfo(float).tiny)
     # Where the line crosses the envelope there are two triangles.
-    heights = np.where(off[:-1] * off[1:] < 0, (one**2 + two**2) / both, both)
+    heights = np.where(off[:-1] * off[1:] < 0, (before**2 + after**2) / both, both)
     return 0.5 * float(np.diff(u) @ heights)
 
 

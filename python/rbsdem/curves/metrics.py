@@ -545,9 +545,9 @@ def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
 
 def _checked_tips(tips: ArrayLike, rows: int) -> NDArray[np.intp]:
     """Return rows of tips as the user gave them."""
-    given = _arguments.finite_vector(tips, "tips")
-    if (given != np.round(given)).any() or (np.diff(given) <= 0).any():
+    numbers = _arguments.finite_vector(tips, "tips")
+    if (numbers != np.round(numbers)).any() or (np.diff(numbers) <= 0).any():
         raise InputError("tips must be numbers of rows that ascend")
-    if given.size and not (given[0] >= 0 and given[-1] < rows):
+    if numbers.size and not (numbers[0] >= 0 and numbers[-1] < rows):
         raise InputError(f"tips must be from 0 to {rows - 1}")
-    return given.astype(np.intp)
+    return numbers.astype(np.intp)

@@ -55,11 +55,11 @@ class TargetCheck(Tabular):
         return np.asarray(self.status == "collapsed")
 
     def _ratios(self) -> dict[str, Array]:
-        found = {"roof": self.roof_drift / self.estimated_roof_drift}
+        ratios = {"roof": self.roof_drift / self.estimated_roof_drift}
         for i, estimate in enumerate(self.estimated_storey_drift):
-            found[f"storey {i + 1}"] = self.storey_drift[:, i] / estimate
+            ratios[f"storey {i + 1}"] = self.storey_drift[:, i] / estimate
         largest = self.storey_drift.max(axis=1) / self.estimated_storey_drift.max()
-        return found | {"largest storey": largest}
+        return ratios | {"largest storey": largest}
 
     def to_pandas(self) -> DataFrame:
         """Return a row for the roof and each storey.
@@ -94,7 +94,7 @@ class TargetCheck(Tabular):
 
 
 def check_target(
-    found: Target,
+    target: Target,
     records: Sequence[GroundMotion],
     *,
     periods: tuple[float, float] = (0.2, 2.0),
@@ -124,18 +124,18 @@ def check_target(
         Drifts under the records over those of the estimate. A frame without damping gets 5 % in
         all modes, as the spectrum has.
     """
-    frame = found.pushed.frame
-    estimate = found.drift, found.storey_drift
+    frame = target.pushed.frame
+    estimate = target.drift, target.storey_drift
     if not frame.damped:
         frame = replace(frame, damping=_DAMPING)
     low, high = (_arguments.number(value, "check_target: periods", above=0.0) for value in periods)
-    t = np.geomspace(low * found.curve.period, high * found.curve.period, 40)
-    wanted = np.array([found.spectrum.sa(one) for one in t])
-    given = _arguments.several(records, "check_target: records", "records")
-    motions = [checked_motion(one, "check_target: ") for one in given]
+    t = np.geomspace(low * target.curve.period, high * target.curve.period, 40)
+    wanted = np.array([target.spectrum.sa(motion) for motion in t])
+    several = _arguments.several(records, "check_target: records", "records")
+    motions = [checked_motion(motion, "check_target: ") for motion in several]
     factors = [
-        math.exp(float(np.log(wanted / one.spectrum(t).pseudo_acceleration).mean()))
-        for one in motions
+        math.exp(float(np.log(wanted / motion.spectrum(t).pseudo_acceleration).mean()))
+        for motion in motions
     ]
     storeys = range(1, estimate[1].size + 1)
     names = [f"peak_storey_drift_{i}" for i in storeys]

@@ -245,8 +245,8 @@ class Ensemble(Tabular):
     @property
     def counts(self) -> dict[str, int]:
         """Number of runs of each status that occurs."""
-        found = {status: int((self.status == status).sum()) for status in inputs.STATUSES}
-        return {status or "not started": number for status, number in found.items() if number}
+        numbers = {status: int((self.status == status).sum()) for status in inputs.STATUSES}
+        return {status or "not started": number for status, number in numbers.items() if number}
 
     def citation(self) -> str:
         """Return the works behind the runs as BibTeX, as those of results.
@@ -270,20 +270,20 @@ class Ensemble(Tabular):
         frames.
         """
         each = list(self.columns.values())
-        frames = np.array([isinstance(one, Frame) for one in each])[self.column]
-        small = np.array([one.kinematics != "finite" for one in each])[self.column]
+        frames = np.array([isinstance(structure, Frame) for structure in each])[self.column]
+        small = np.array([structure.kinematics != "finite" for structure in each])[self.column]
         unknown = np.full(len(self), np.nan)
         rotation, energy, _ = _core.note_limits()
         turned = self.measures.get("peak_rotation", unknown) > rotation
         missed = self.measures.get("relative_energy_residual", unknown) > energy
-        found = np.full(len(self), "", dtype="<U80")
-        found[turned & small & ~frames & (self.status != "collapsed")] = (
+        texts = np.full(len(self), "", dtype="<U80")
+        texts[turned & small & ~frames & (self.status != "collapsed")] = (
             f"rotations go beyond {rotation:g} rad; use kinematics = 'finite'"
         )
-        found[missed & frames] = (
+        texts[missed & frames] = (
             f"the balance of energy misses more than {energy:.0%}; take a shorter dt"
         )
-        return found
+        return texts
 
     def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run: what it is, its measures, warnings and error."""
@@ -418,9 +418,9 @@ def ensemble(
     settings = {name: _plain(value) for name, value in settings.items()}
     faults: list[str] = []
     column_names, column_items = inputs.named_columns(columns, faults)
-    given, motion_items = inputs.named_motions(motions, faults)
+    number, motion_items = inputs.named_motions(motions, faults)
     before = inputs.states_of_columns(initial, column_names, faults)
-    full = inputs.scale_array(scales, len(column_names), given, faults)
+    full = inputs.scale_array(scales, len(column_names), number, faults)
     names: tuple[str, ...] = ()
     functions: dict[str, inputs.Measure] = {}
     with _arguments.collected(faults):
@@ -458,8 +458,10 @@ def ensemble(
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
         kept = Store(_arguments.path(store), plan, own_names, part)
-    own = _of_part(each.size, part)
-    outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
+    runs_of_part = _of_part(each.size, part)
+    outcome, resumed, end = _carried_out(
+        plan, runs_of_part, (each, lanes), kept, client, jobs, progress
+    )
     states = zip(column_names, before, strict=True)
     whole = Ensemble(
         dict(zip(column_names, column_items, strict=True)),
@@ -483,7 +485,7 @@ def ensemble(
 
 def _carried_out(
     plan: Plan,
-    own: NDArray[np.int_],
+    runs_of_part: NDArray[np.int_],
     cost: tuple[Array, NDArray[np.int32]],
     kept: Store | None,
     client: Any,
@@ -501,7 +503,7 @@ def _carried_out(
         if kept is not None:
             stack.enter_context(kept.open())
             resumed = kept.read(outcome)
-        missing = own[outcome.fates[own] == 0]
+        missing = runs_of_part[outcome.fates[runs_of_part] == 0]
         if not cost[1][missing].any():
             # Runs of large scales take longer: in every part of the work there are runs of all.
             missing = missing[np.argsort(_GOLDEN * np.arange(missing.size) % 1.0)]
@@ -613,16 +615,16 @@ def _of_part(runs: int, part: tuple[int, int]) -> NDArray[np.int_]:
     return np.sort(drawn[number - 1 :: parts])
 
 
-def _told(found: Ensemble, store: Any) -> str:
+def _told(partial: Ensemble, store: Any) -> str:
     """Return the text of an interruption."""
-    done = int((found.status != "").sum())
+    done = int((partial.status != "").sum())
     kept = (
         "this error has them as `ensemble`; with store= the next call computes the rest"
         if store is None
         else f"they are in {store}, and the same call computes the rest"
     )
     return (
-        f"ensemble: interrupted after {done} of {len(found)} runs; {kept} (allow_partial=True "
+        f"ensemble: interrupted after {done} of {len(partial)} runs; {kept} (allow_partial=True "
         "returns what is done)"
     )
 

@@ -61,7 +61,7 @@ class Hazard:
         _arguments.raise_faults(faults)
         for name, values in (("intensities", im), ("frequencies", rate)):
             values.flags.writeable = False
-            object.__setattr__(self, name, values)
+            _arguments.put(self, **{name: values})
 
     def exceeded(self, intensity: ArrayLike) -> Array:
         """Return the mean annual frequency with which intensities are exceeded."""
@@ -95,14 +95,14 @@ class Hazard:
         x, y = np.log(self.intensities), np.log(self.frequencies)
         i = int(np.clip(np.searchsorted(-y, -np.log(rate)) - 1, 0, x.size - 2))
         slope = (x[i + 1] - x[i]) / (y[i + 1] - y[i])
-        found = float(np.exp(x[i] + slope * (np.log(rate) - y[i])))
+        intensity_at = float(np.exp(x[i] + slope * (np.log(rate) - y[i])))
         if not self.frequencies[-1] <= rate <= self.frequencies[0]:
             warn(
                 f"hazard: a frequency of {rate:.4g} a year is beyond its points "
                 f"({self.frequencies[0]:g} to {self.frequencies[-1]:g}); the power law of the "
                 "nearest two is followed",
             )
-        return found
+        return intensity_at
 
     def frequency_of(self, mu: float, beta: float) -> float:
         """Return how often a year a limit state is reached whose fragility is lognormal.
@@ -514,8 +514,8 @@ def fit_fragility(
         covariance = np.diag([spread**2 / n, spread**2 / (2 * (n - 1))])
     else:
         bounds = data.bounds()
-        found = fit_bounds(bounds, beta)
-        mu, spread, covariance = float(found[0]), float(found[1]), found[2]
+        estimate = fit_bounds(bounds, beta)
+        mu, spread, covariance = float(estimate[0]), float(estimate[1]), estimate[2]
         if np.isinf(spread):
             raise InputError(
                 f"{who}the share of the runs that reach it does not grow with the intensity; add "
@@ -642,7 +642,7 @@ class WithFragility(Tabular, ABC):
             By name a threshold of `edp`, or a pair of a measure and its threshold, as
             ``{"yield": ("first_yield", None), "repair": 0.01, "collapse": ("collapse", None)}``.
         edp : str, optional
-            Measure of the thresholds that come alone, by default `Runs.drift`.
+            Measure of the thresholds that come alone, by default `Runs.drift_measure`.
         beta : mapping, optional
             By name a stated beta, as for `IDA.fragility`.
 
@@ -651,7 +651,7 @@ class WithFragility(Tabular, ABC):
         InputError
             If a curve is not determined, or a beta belongs to no limit state.
         """
-        states, stated = limit_states(edp or self.runs.drift, limits), dict(beta or {})
+        states, stated = limit_states(edp or self.runs.drift_measure, limits), dict(beta or {})
         if unknown := stated.keys() - states.keys():
             raise InputError(
                 f"beta of {', '.join(sorted(unknown))}: no such limit state; there are "

@@ -79,9 +79,9 @@ class CollapseSearch:
         bounds = {"first": (0.0, 1e3), "growth": (1.0, 10.0), "resolution": (1e-6, 1.0)}
         for name, (above, most) in (bounds | {"highest": (0.0, 1e6)}).items():
             with _arguments.collected(faults):
-                given = getattr(self, name)
-                value = _arguments.number(given, f"search: {name}", above=above, most=most)
-                object.__setattr__(self, name, value)
+                limit = getattr(self, name)
+                value = _arguments.number(limit, f"search: {name}", above=above, most=most)
+                _arguments.put(self, **{name: value})
         with _arguments.collected(faults):
             _arguments.integer(self.points, "search: points", least=1, most=1000)
         if not faults and self.first > self.highest:
@@ -119,8 +119,8 @@ def search_collapse(
         _narrow(work, search, low, high)
     # A column may have no such limit state, as without bars that could fracture.
     measured = (f"measure {name}" for name in refine)
-    found = [m for m in measured if any(np.isfinite(part[m]).any() for part in work.parts)]
-    _narrow_states(work, low, found)
+    reached = [m for m in measured if any(np.isfinite(part[m]).any() for part in work.parts)]
+    _narrow_states(work, low, reached)
     return low, high
 
 
@@ -184,12 +184,12 @@ def _fill(work: Collector, search: CollapseSearch, low: Array, high: Array) -> b
     wanted: dict[tuple[int, int], list[float]] = {}
     for column, motion in np.ndindex(low.shape):
         (tried,) = work.tried(column, motion, "intensity")
-        own = sorted({0.0, *tried[tried <= low[column, motion]].tolist()})
+        points = sorted({0.0, *tried[tried <= low[column, motion]].tolist()})
         added: list[float] = []
-        while len(own) - 1 < search.points and low[column, motion] > 0:
-            gap = int(np.argmax(np.diff(own)))
-            added.append(0.5 * (own[gap] + own[gap + 1]))
-            own.insert(gap + 1, added[-1])
+        while len(points) - 1 < search.points and low[column, motion] > 0:
+            gap = int(np.argmax(np.diff(points)))
+            added.append(0.5 * (points[gap] + points[gap + 1]))
+            points.insert(gap + 1, added[-1])
         if added:
             wanted[column, motion] = added
     if not wanted:
@@ -261,12 +261,12 @@ class IDA(WithFragility):
         motion, column : str or int
             Name, or number from 0.
         edp : str, optional
-            Measure of the response, by default `Runs.drift`; it is infinite where the column
-            collapsed.
+            Measure of the response, by default `Runs.drift_measure`; it is infinite where the
+            column collapsed.
         """
         c = _index(column, list(self.runs.columns), "column")
         m = _index(motion, list(self.runs.motions), "motion")
-        return self._curve(c, m, self.runs.response(edp or self.runs.drift))
+        return self._curve(c, m, self.runs.response(edp or self.runs.drift_measure))
 
     def fractiles(
         self, levels: ArrayLike | None = None, edp: str | None = None
@@ -278,7 +278,7 @@ class IDA(WithFragility):
         levels : array_like, shape (k,), optional
             Intensities [m/s2]; by default 50 up to the highest of the runs.
         edp : str, optional
-            Measure of the response, by default `Runs.drift`.
+            Measure of the response, by default `Runs.drift_measure`.
 
         Returns
         -------
@@ -287,7 +287,7 @@ class IDA(WithFragility):
         """
         usual = np.linspace(0, self.runs.intensity.max(), 51)[1:]
         at = usual if levels is None else checked_levels(levels)
-        response = self.runs.response(edp or self.runs.drift)
+        response = self.runs.response(edp or self.runs.drift_measure)
         values = np.array([_at(at, *self._curve(c, m, response)) for c, m in self._pairs()])
         return at, np.percentile(values, FRACTILES, axis=0, method="inverted_cdf")
 
@@ -324,8 +324,8 @@ class IDA(WithFragility):
 
     def _curve(self, column: int, motion: int, response: Array) -> tuple[Array, Array]:
         """Return the curve from the origin to the first collapse."""
-        own = (self.runs.column == column) & (self.runs.motion == motion)
-        level, values = self.runs.intensity[own], response[own]
+        runs_of_curve = (self.runs.column == column) & (self.runs.motion == motion)
+        level, values = self.runs.intensity[runs_of_curve], response[runs_of_curve]
         kept = level <= self.upper[column, motion] * (1 + 1e-12)
         level, values = level[kept], values[kept]
         if level.size and level[0] == 0:
@@ -333,14 +333,16 @@ class IDA(WithFragility):
         return np.concatenate([[0.0], level]), np.concatenate([[0.0], values])
 
     def __repr__(self) -> str:
-        found = self.collapse_intensity[np.isfinite(self.upper)]
-        middle = f", their sample median at {np.median(found):.4g} m/s2" if found.size else ""
-        if self.at_ends and found.size:
+        collapses = self.collapse_intensity[np.isfinite(self.upper)]
+        middle = (
+            f", their sample median at {np.median(collapses):.4g} m/s2" if collapses.size else ""
+        )
+        if self.at_ends and collapses.size:
             ends = (np.median(end.collapse_intensity) for end in self.at_ends)
             middle += " ({:.4g} to {:.4g} with early and late axial failure)".format(*ends)
         return (
             f"IDA({self.runs.measure.label}: {self.lower.size} curves, {len(self.runs)} runs, "
-            f"{found.size} collapses{middle}; {self.seconds:.3g} s)"
+            f"{collapses.size} collapses{middle}; {self.seconds:.3g} s)"
         )
 
 
@@ -419,8 +421,8 @@ def ida(
         else:
             collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
             lower, upper = _first(at, collapsed)
-    own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
-    about = {n: v for n, v in own.items() if v is not None and v is not False}
+    kept = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
+    about = {n: v for n, v in kept.items() if v is not None and v is not False}
     about["levels"] = "search" if search is not None else "given"
     runs = work.finish()
     needed = bool(failing) and (asked is True or _may_fail(runs, failing))
@@ -476,11 +478,11 @@ def _refined(refine: Any, measures: Collection[str]) -> list[str]:
 
 
 def _with_drift(measures: Sequence[str | Measure], columns: Any) -> list[Any]:
-    """Return measures with the drift of `Runs.drift` among them."""
-    given = measures_in_a_list(measures)
-    named = [measure for measure in given if isinstance(measure, str)]
+    """Return measures with the drift of `Runs.drift_measure` among them."""
+    several = measures_in_a_list(measures)
+    named = [measure for measure in several if isinstance(measure, str)]
     drift = drift_of(columns_by_name(columns).values())
-    return given if drift in named else [drift, *given]
+    return several if drift in named else [drift, *several]
 
 
 def _first(levels: Array, collapsed: NDArray[np.bool_]) -> tuple[Array, Array]:
@@ -493,13 +495,13 @@ def _first(levels: Array, collapsed: NDArray[np.bool_]) -> tuple[Array, Array]:
 def _at(levels: Array, level: Array, response: Array) -> Array:
     """Return the response at levels: linear between runs, infinite from the collapse on."""
     last = int(np.argmax(~np.isfinite(response))) if np.isinf(response).any() else response.size
-    found = np.interp(levels, level[:last], response[:last], right=np.nan)
+    interpolated = np.interp(levels, level[:last], response[:last], right=np.nan)
     if last < response.size:
         # Between the last run without and the first with a collapse the response stays.
-        found = np.where(levels > level[last - 1], response[last - 1], found)
-        return np.where(levels >= level[last], np.inf, found)
+        interpolated = np.where(levels > level[last - 1], response[last - 1], interpolated)
+        return np.where(levels >= level[last], np.inf, interpolated)
     # No collapse: what was not run is not known to be lower than the last run.
-    return np.where(np.isnan(found), np.inf, found)
+    return np.where(np.isnan(interpolated), np.inf, interpolated)
 
 
 def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tuple[float, float]:
@@ -602,17 +604,17 @@ def stripes(
     if by_level is None:
         if levels is None:
             raise InputError("stripes: levels are missing; give intensities in m/s2")
-        found, wanted = motions_by_name(motions), checked_levels(levels)
+        records, wanted = motions_by_name(motions), checked_levels(levels)
         at = wanted
     else:
         if levels is not None:
             raise InputError("stripes: the motions come by level; leave levels out")
-        found, wanted = _records_of_levels(by_level)
+        records, wanted = _records_of_levels(by_level)
         at = checked_levels(list(by_level))
-    names, found = list(found), own_records(found, options)
+    names, records = list(records), own_records(records, options)
     if by_level is not None:
-        wanted = wanted[[name in found for name in names]]
-    work = make_collector("stripes", column, found, **options)
+        wanted = wanted[[name in records for name in names]]
+    work = make_collector("stripes", column, records, **options)
     work.run(np.broadcast_to(wanted, (*work.shape, wanted.shape[-1])).copy())
     return Stripes(work.finish(), at, by_level is None, time.perf_counter() - begin)
 
@@ -631,9 +633,9 @@ def _records_of_levels(
     by_level: dict[float, dict[str, GroundMotion]],
 ) -> tuple[dict[str, GroundMotion], Array]:
     """Return all motions, named after their levels, and the level of each, shape (motions, 1)."""
-    found, levels = {}, []
-    for level, own in by_level.items():
-        for name, motion in own.items():
-            found[f"{level:g} {name}"] = motion
+    records, levels = {}, []
+    for level, motions in by_level.items():
+        for name, motion in motions.items():
+            records[f"{level:g} {name}"] = motion
             levels.append(level)
-    return found, np.array(levels)[:, None]
+    return records, np.array(levels)[:, None]

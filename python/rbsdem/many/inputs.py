@@ -56,31 +56,33 @@ def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
     if hasattr(motions, "acceleration") or _is_pair(motions):
         motions = [motions]
     names, items = named(motions, "motions", "motion", faults)
-    found = []
+    right = []
     for name, item in zip(names, items, strict=True):
         with _arguments.collected(faults, f"motion {name!r}: "):
-            found.append(_motion(name, item))
+            right.append(_motion(name, item))
     check_names(names, "motions", "motion", faults)
-    return len(names), found
+    return len(names), right
 
 
-def named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str | int], list[Any]]:
+def named(
+    several: Any, what: str, kind: str, faults: list[str]
+) -> tuple[list[str | int], list[Any]]:
     """Return names and items; those of a sequence have their own names, else their numbers."""
-    if isinstance(given, Mapping):
-        return list(given.keys()), list(given.values())
+    if isinstance(several, Mapping):
+        return list(several.keys()), list(several.values())
     try:
-        items = list(given)
+        items = list(several)
     except TypeError:
-        faults.append(f"{what} = {type(given).__name__} must be a {one}, or several of them")
+        faults.append(f"{what} = {type(several).__name__} must be a {kind}, or several of them")
         return [], []
     names = (getattr(item, "name", None) for item in items)
     return [name if isinstance(name, str) and name else i for i, name in enumerate(names)], items
 
 
-def check_names(names: list[str | int], what: str, one: str, faults: list[str]) -> None:
+def check_names(names: list[str | int], what: str, kind: str, faults: list[str]) -> None:
     """Add a fault for names that a table cannot have, or could not tell apart, and for none."""
     if not names and not faults:
-        faults.append(f"{what} is empty; give at least one {one}")
+        faults.append(f"{what} is empty; give at least one {kind}")
     for name in names:
         if isinstance(name, bool) or not isinstance(name, (str, int, np.integer)):
             faults.append(f"{what}: the name {name!r} must be a text or a whole number")
@@ -88,7 +90,9 @@ def check_names(names: list[str | int], what: str, one: str, faults: list[str]) 
             faults.append(f"{what}: the name {name!r} has characters that no file takes")
     count = Counter(map(str, names))
     for name in sorted(name for name, number in count.items() if number > 1):
-        faults.append(f"{what}: two are called {name!r}; give them other names, as {{name: {one}}}")
+        faults.append(
+            f"{what}: two are called {name!r}; give them other names, as {{name: {kind}}}"
+        )
 
 
 def _is_pair(item: Any) -> bool:
@@ -100,19 +104,19 @@ def _is_pair(item: Any) -> bool:
 
 def _motion(name: str | int, item: Any) -> Motion:
     if hasattr(item, "time") and hasattr(item, "acceleration"):
-        given_time, given = item.time, item.acceleration
+        times, values = item.time, item.acceleration
     elif _is_pair(item):
-        given_time, given = item
+        times, values = item
     else:
         raise InputError(
             f"a {type(item).__name__} is not a motion; give a GroundMotion, or a pair of times (or "
             "one step) [s] and accelerations [m/s2]"
         )
-    acceleration = _arguments.finite_vector(given, "acceleration")
-    if isinstance(given_time, (int, float)):
-        step = _arguments.number(given_time, "step", above=0, unit="s")
-        given_time = step * np.arange(acceleration.size)
-    time = _arguments.finite_vector(given_time, "time")
+    acceleration = _arguments.finite_vector(values, "acceleration")
+    if isinstance(times, (int, float)):
+        step = _arguments.number(times, "step", above=0, unit="s")
+        times = step * np.arange(acceleration.size)
+    time = _arguments.finite_vector(times, "time")
     if time.size != acceleration.size:
         raise InputError(
             f"{acceleration.size} accelerations for {time.size} times; give one for each"
@@ -145,21 +149,21 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
             faults.append(
                 f"initial: {unknown[0]!r} is no column; they are {', '.join(map(repr, names[:20]))}"
             )
-        given = [initial.get(name) for name in names]
+        states = [initial.get(name) for name in names]
     else:
         try:
-            given = list(initial)
+            states = list(initial)
         except TypeError:
             return [_state(initial, "", faults)] * len(names)
-        if len(given) != len(names):
+        if len(states) != len(names):
             faults.append(
-                f"initial: {len(given)} states for {len(names)} columns; give one for each, or one "
-                "for all"
+                f"initial: {len(states)} states for {len(names)} columns; give one for each, or "
+                "one for all"
             )
             return [AT_REST] * len(names)
     return [
         AT_REST if state is None else _state(state, f"column {name!r}: ", faults)
-        for name, state in zip(names, given, strict=True)
+        for name, state in zip(names, states, strict=True)
     ]
 
 
@@ -172,27 +176,27 @@ def _state(initial: Any, who: str, faults: list[str]) -> Array:
 def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]) -> Array:
     """Return the scales for each column and motion, shape (columns, motions, k); NaN: no run."""
     try:
-        given = _arguments.vector(scales, "scales", shape="any")
+        array = _arguments.vector(scales, "scales", shape="any")
     except InputError as error:
         faults.append(str(error))
         return np.ones((columns, motions, 1))
-    if given.ndim == 0:
-        given = given[None]
-    shape = columns, motions, given.shape[-1]
+    if array.ndim == 0:
+        array = array[None]
+    shape = columns, motions, array.shape[-1]
     try:
-        full = np.broadcast_to(given, shape)
+        full = np.broadcast_to(array, shape)
     except ValueError:
         faults.append(
-            f"scales has shape {given.shape}; it must be (k,), ({motions}, k) with a row for each "
+            f"scales has shape {array.shape}; it must be (k,), ({motions}, k) with a row for each "
             f"motion, or ({columns}, {motions}, k)"
         )
         return np.ones((columns, motions, 1))
-    if given.ndim > 3:
-        faults.append(f"scales has {given.ndim} dimensions; it can have three")
-    wrong = given[np.isinf(given) | (np.abs(given) > _arguments.BEYOND_MEANING)]
+    if array.ndim > 3:
+        faults.append(f"scales has {array.ndim} dimensions; it can have three")
+    wrong = array[np.isinf(array) | (np.abs(array) > _arguments.BEYOND_MEANING)]
     if wrong.size:
         faults.append(f"scales: {wrong[0]} must be a finite number, or NaN for no run")
-    elif np.isnan(given).all():
+    elif np.isnan(array).all():
         faults.append("scales: no run is asked for; give at least one number")
     return full
 
@@ -256,8 +260,8 @@ def limit_states_among(names: Sequence[str]) -> tuple[str, ...]:
 
 def storeys_among(names: Sequence[str]) -> int:
     """Return the number of storeys whose drifts are asked for one by one: up to the highest."""
-    found = [_OF_A_STOREY.fullmatch(name) for name in names]
-    return max((int(each[1]) for each in found if each), default=0)
+    matches = [_OF_A_STOREY.fullmatch(name) for name in names]
+    return max((int(each[1]) for each in matches if each), default=0)
 
 
 def storey_measures(storeys: int) -> tuple[str, ...]:
@@ -335,13 +339,13 @@ def limit_states(edp: str, threshold: Any) -> dict[str, tuple[str, float]]:
     if isinstance(threshold, Mapping):
         if not threshold:
             raise InputError("threshold is empty; give at least one limit state")
-        found = {}
+        states = {}
         for name, value in threshold.items():
             pair = value if isinstance(value, tuple) and len(value) == 2 else (edp, value)
-            found[str(name)] = _one(str(pair[0]), pair[1])
-        return found
-    one = _one(edp, threshold)
-    return {edp if threshold is None else f"{edp} {one[1]:g}": one}
+            states[str(name)] = _one(str(pair[0]), pair[1])
+        return states
+    state = _one(edp, threshold)
+    return {edp if threshold is None else f"{edp} {state[1]:g}": state}
 
 
 def _one(edp: str, threshold: Any) -> tuple[str, float]:

@@ -57,10 +57,10 @@ class Judgement:
         """Return what was found, a line each."""
         lines = [] if self.target is None else [str(self.target)]
         lines += [] if self.check is None else [str(self.check)]
-        for found, level in zip(self.assessments, self.levels, strict=True):
-            word = "accepted" if found.accepted(level) else "not accepted"
-            lines += [str(found), f"{word} at {level}; the largest ratios:"]
-            lines.append(text_table(found.worst(5, level)))
+        for assessment, level in zip(self.assessments, self.levels, strict=True):
+            word = "accepted" if assessment.accepted(level) else "not accepted"
+            lines += [str(assessment), f"{word} at {level}; the largest ratios:"]
+            lines.append(text_table(assessment.worst(5, level)))
         return "\n".join(lines)
 
 
@@ -90,12 +90,12 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     except InputError as error:
         faults.append(str(error))
     levels = []
-    for given in case.assess:
-        known = LEVELS[given["code"]]
-        levels.append(given.get("level", known[-1]))
+    for group in case.assess:
+        known = LEVELS[group["code"]]
+        levels.append(group.get("level", known[-1]))
         if levels[-1] not in known:
             faults.append(
-                f"assess: level = {levels[-1]!r} is none of {given['code']}; it is one of "
+                f"assess: level = {levels[-1]!r} is none of {group['code']}; it is one of "
                 f"{', '.join(known)}"
             )
     if faults:
@@ -103,15 +103,15 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     return spectrum, levels
 
 
-def _spectrum(given: Mapping[str, Any]) -> DesignSpectrum:
-    code = given["spectrum"]
+def _spectrum(group: Mapping[str, Any]) -> DesignSpectrum:
+    code = group["spectrum"]
     for name in _NEEDED[code]:
-        if name not in given:
+        if name not in group:
             raise InputError(f"target: {name} is missing; spectrum = {code!r} needs it")
     others = {name for names in _SPECTRA.values() for name in names} - {*_SPECTRA[code]}
-    for name in others & given.keys():
+    for name in others & group.keys():
         raise InputError(f"target: {name} is not of spectrum = {code!r}; remove it")
-    values = {name: given[name] for name in _SPECTRA[code] if name in given}
+    values = {name: group[name] for name in _SPECTRA[code] if name in group}
     return (DesignSpectrum.en_1998 if code == "en_1998" else DesignSpectrum.asce_41)(**values)
 
 
@@ -175,14 +175,14 @@ def judge(
             records = read_motions(place, units) if folder else [read_motion(place, units)]
             check = check_target(point, records, jobs=jobs, progress=progress)
     at = point if point is not None and point.reached else None
-    found = []
-    for given in case.assess:
+    assessments = []
+    for group in case.assess:
         names = ("knowledge", "primary", "detailing")
-        options = {name: given[name] for name in names if name in given}
+        options = {name: group[name] for name in names if name in group}
         options["limits"] = {
             limit["member"]: limit["rotations"]
             for limit in case.limit
-            if limit.get("code", given["code"]) == given["code"]
+            if limit.get("code", group["code"]) == group["code"]
         }
-        found.append(assess(result, given["code"], at=at, **options))
-    return Judgement(result, point, check, found, levels)
+        assessments.append(assess(result, group["code"], at=at, **options))
+    return Judgement(result, point, check, assessments, levels)

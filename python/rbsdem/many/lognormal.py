@@ -164,12 +164,12 @@ def _covariance(terms: _Terms, a: Array, b: Array, unit: Array, both: bool) -> A
     with np.errstate(divide="ignore", invalid="ignore"):
         if not both:
             zero = np.zeros_like(per)
-            found = [[per**2 / h11, zero], [zero, zero]]
+            inverse = [[per**2 / h11, zero], [zero, zero]]
         else:
             det = h11 * h22 - h12**2
             # mu = middle - unit a/b, beta = unit/b.
             by_a, by_b = (-per, np.zeros_like(per)), (per * a / b, -per / b)
-            found = [
+            inverse = [
                 [
                     (
                         h22 * by_a[i] * by_a[j]
@@ -181,7 +181,7 @@ def _covariance(terms: _Terms, a: Array, b: Array, unit: Array, both: bool) -> A
                 ]
                 for i in (0, 1)
             ]
-    return np.moveaxis(np.array(found), (0, 1), (-2, -1))
+    return np.moveaxis(np.array(inverse), (0, 1), (-2, -1))
 
 
 def _able(bounds: Bounds, *, stated: bool) -> NDArray[np.bool_]:
@@ -232,10 +232,10 @@ class _Terms:
             h * h * vu - l * l * ul + g[1] ** 2,
         )
         x = self._point
-        z, one = a[..., None] + b[..., None] * x, np.ones_like(x)
+        z, ones = a[..., None] + b[..., None] * x, np.ones_like(x)
         per = 1.0 / b[..., None]
         g_point = -z, per - x * z
-        second_point = one, x * one, x * x + per**2
+        second_point = ones, x * ones, x * x + per**2
         return self._sums(g_point, g), self._sums(second_point, second)
 
     def _sums(self, known: tuple[Array, ...], bounded: tuple[Array, ...]) -> tuple[Array, ...]:

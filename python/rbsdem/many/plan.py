@@ -241,7 +241,7 @@ def one_run(
 def watched(column: Structure, states: tuple[str, ...]) -> Array:
     """Return the criteria of runs of a column, as `_core.batch` takes them."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
-    found = criteria(column, numbers)
-    if not found:
+    limits = criteria(column, numbers)
+    if not limits:
         return _NO_WATCH
-    return thresholds(column, found, [numbers[each.name] for each in found])
+    return thresholds(column, limits, [numbers[each.name] for each in limits])

@@ -84,25 +84,25 @@ def make_intensity(name: str, column: Structure, period: float | None, damping: 
 def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
     """Return motions under their names, or raise `InputError` with all that is wrong."""
     faults: list[str] = []
-    given = [motions] if isinstance(motions, GroundMotion) else motions
-    names, items = inputs.named(given, "motions", "GroundMotion", faults)
-    found: dict[str, GroundMotion] = {}
+    several = [motions] if isinstance(motions, GroundMotion) else motions
+    names, items = inputs.named(several, "motions", "GroundMotion", faults)
+    by_name: dict[str, GroundMotion] = {}
     for name, item in zip(names, items, strict=True):
         with _arguments.collected(faults):
-            motion = found[str(name)] = checked_motion(item, f"motion {name}: ")
+            motion = by_name[str(name)] = checked_motion(item, f"motion {name}: ")
             if motion.pga == 0:
                 raise InputError(f"motion {name}: has no acceleration")
     inputs.check_names(names, "motions", "motion", faults)
     _arguments.raise_faults(faults)
-    return found
+    return by_name
 
 
 def checked_levels(levels: Any) -> Array:
     """Return levels of intensity, ascending."""
-    found = np.unique(_arguments.finite_vector(levels, "levels", shape="1 or m"))
-    if found.size == 0 or found[0] <= 0:
+    ascending = np.unique(_arguments.finite_vector(levels, "levels", shape="1 or m"))
+    if ascending.size == 0 or ascending[0] <= 0:
         raise InputError("levels must be intensities above 0, in m/s2; give at least one")
-    return found
+    return ascending
 
 
 #: Measures of a run that are kept unless others are asked for.
@@ -207,8 +207,8 @@ class Runs(Tabular):
         return np.isin(self.status, LOST)
 
     @property
-    def drift(self) -> str:
-        """The measure of drift that figures and limits mean: of storeys, else of the top."""
+    def drift_measure(self) -> str:
+        """Name of the drift that figures and limits mean: of storeys, else of the top."""
         drift = drift_of(self.columns.values())
         return drift if drift in self.measures else "peak_drift"
 
@@ -301,27 +301,27 @@ class Collector:
             Whether the column collapsed; False where there is no run.
         """
         scales = levels / self.unit[:, None]
-        found = self._ensemble(scales, self.settings)
-        status, values = found.status.copy(), {n: v.copy() for n, v in found.measures.items()}
+        first = self._ensemble(scales, self.settings)
+        status, values = first.status.copy(), {n: v.copy() for n, v in first.measures.items()}
         failed = np.flatnonzero(status == "failed")
         if failed.size and self.settings.get("method") != _AGAIN:
             # A method that adapts its step may get through where a fixed one does not.
             again = np.full(levels.shape, np.nan)
             places = np.flatnonzero(~np.isnan(scales).ravel())[failed]
             again.ravel()[places] = scales.ravel()[places]
-            own = {n: v for n, v in self.settings.items() if n in _KEPT} | {"method": _AGAIN}
-            if own.get("store") is not None:
-                own["store"] /= _AGAIN
-            second = self._ensemble(again, own)
+            how = {n: v for n, v in self.settings.items() if n in _KEPT} | {"method": _AGAIN}
+            if how.get("store") is not None:
+                how["store"] /= _AGAIN
+            second = self._ensemble(again, how)
             status[failed] = second.status
             for name, numbers in values.items():
                 numbers[failed] = second.measures[name]
         self.parts.append(
             {
-                "column": found.column,
-                "motion": found.motion,
-                "scale": found.scale,
-                "intensity": found.scale * self.unit[found.motion],
+                "column": first.column,
+                "motion": first.motion,
+                "scale": first.scale,
+                "intensity": first.scale * self.unit[first.motion],
                 "status": status,
                 **{f"measure {name}": numbers for name, numbers in values.items()},
             }
@@ -332,9 +332,11 @@ class Collector:
 
     def tried(self, column: int, motion: int, *names: str) -> list[NDArray[Any]]:
         """Return named arrays of the runs so far of a column under a motion."""
-        own = [(p["column"] == column) & (p["motion"] == motion) for p in self.parts]
+        chosen = [(p["column"] == column) & (p["motion"] == motion) for p in self.parts]
         return [
-            np.concatenate([part[name][kept] for part, kept in zip(self.parts, own, strict=True)])
+            np.concatenate(
+                [part[name][kept] for part, kept in zip(self.parts, chosen, strict=True)]
+            )
             for name in names
         ]
 
@@ -353,15 +355,15 @@ class Collector:
             )
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
-        given = settings | {"scales": scales, "measures": list(self.names)}
+        keywords = settings | {"scales": scales, "measures": list(self.names)}
         before = sum(part["status"].size for part in self.parts)
-        bar = given["progress"]
+        bar = keywords["progress"]
         if callable(bar):
-            given["progress"] = lambda done, text: bar(before + done, text)
+            keywords["progress"] = lambda done, text: bar(before + done, text)
         try:
-            found = ensemble(dict(self.columns), dict(self.motions), **given)
+            runs = ensemble(dict(self.columns), dict(self.motions), **keywords)
         except Interrupted as error:
-            done, store = before + int((error.ensemble.status != "").sum()), given["store"]
+            done, store = before + int((error.ensemble.status != "").sum()), keywords["store"]
             kept = (
                 "with a store (store=, or --out of the command) they would be kept"
                 if store is None
@@ -369,11 +371,11 @@ class Collector:
             )
             text = f"{self.who}: interrupted after {done} runs; {kept}"
             raise Interrupted(text, error.ensemble) from None
-        for text in found.errors.values():
+        for text in runs.errors.values():
             # Else the runs would count as collapses.
             if text.startswith(FAULT_OF_MEASURE):
                 raise InputError(f"{text}; where it has no value it can return nan")
-        return found
+        return runs
 
     def finish(self) -> Runs:
         """Return all runs, by column, motion and intensity."""
@@ -387,9 +389,9 @@ class Collector:
                 "their status in the table is 'failed'",
             )
         start = len("measure ")
-        found = {name[start:]: v for name, v in whole.items() if name.startswith("measure ")}
+        measures = {name[start:]: v for name, v in whole.items() if name.startswith("measure ")}
         column, motion = whole["column"].astype(int), whole["motion"].astype(int)
-        runs = column, motion, whole["intensity"], whole["scale"], whole["status"], found
+        runs = column, motion, whole["intensity"], whole["scale"], whole["status"], measures
         return Runs(dict(self.columns), dict(self.motions), self.measure, *runs)
 
 
@@ -456,8 +458,10 @@ def own_records(motions: dict[str, GroundMotion], options: RunOptions) -> dict[s
 def drift_of(structures: Iterable[Structure]) -> str:
     """Return the measure of drift that collapse is judged by: of storeys, or of the top."""
     by_storeys = [
-        isinstance(one, Frame) and bool(one.storey_heights) and one.collapse == "storey"
-        for one in structures
+        isinstance(structure, Frame)
+        and bool(structure.storey_heights)
+        and structure.collapse == "storey"
+        for structure in structures
     ]
     return "peak_storey_drift" if by_storeys and all(by_storeys) else "peak_drift"
 

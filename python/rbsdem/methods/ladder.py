@@ -305,10 +305,10 @@ def study_case(
             f"compare_methods: initial = {_arguments.shown(initial)} must be a mapping of slips, "
             "rotations and velocities; the state in which a result ended is for time_history"
         )
-    given = {name: _arguments.finite_vector(values, name) for name, values in loads.items()}
+    histories = {name: _arguments.finite_vector(values, name) for name, values in loads.items()}
     if time is None:
-        if set(given) not in ({"displacement"}, {"force"}):
-            names = ", ".join(given) or "none"
+        if set(histories) not in ({"displacement"}, {"force"}):
+            names = ", ".join(histories) or "none"
             raise InputError(
                 "compare_methods: without time the path is static and needs exactly one of "
                 f"displacement and force; given: {names}"
@@ -317,21 +317,21 @@ def study_case(
             raise InputError(
                 "compare_methods: initial has no meaning for a static path; give time as well"
             )
-        (path,) = given.values()
+        (path,) = histories.values()
         if path.size < 2:
             raise InputError("compare_methods: the path has fewer than 2 points")
         points = np.arange(float(path.size))
-        return StudyCase(column, points, given, None, collapse_drift, static=True)
-    if "displacement" in given:
+        return StudyCase(column, points, histories, None, collapse_drift, static=True)
+    if "displacement" in histories:
         raise InputError(
             "compare_methods: displacement drives a static path only; remove it, or time"
         )
-    if not given and not initial:
+    if not histories and not initial:
         raise InputError(
             "compare_methods: nothing moves the column; give a load or an initial state"
         )
     times = _arguments.finite_vector(time, "time")
-    for name, values in given.items():
+    for name, values in histories.items():
         if values.size != times.size:
             raise InputError(f"{name} has {values.size} values for {times.size} times")
     if times.size < 2 or not np.all(np.diff(times) > 0):
@@ -340,9 +340,9 @@ def study_case(
     if parts > 1:
         place = np.arange(parts * (times.size - 1) + 1) / parts
         old = np.arange(times.size)
-        given = {name: np.interp(place, old, values) for name, values in given.items()}
+        histories = {name: np.interp(place, old, values) for name, values in histories.items()}
         times = np.interp(place, old, times)
-    return StudyCase(column, times, given, initial, collapse_drift)
+    return StudyCase(column, times, histories, initial, collapse_drift)
 
 
 def reversals(path: Array) -> NDArray[np.intp]:
@@ -506,21 +506,21 @@ def ladders(case: StudyCase, look: Probe, methods: Sequence[str]) -> list[list[S
     lower = LEVELS[: LEVELS.index(level)]
     if case.static:
         parts = (0, 1, 2, 4, 8) if level == "finite" else (0, 1, 4)
-        own = [Setting("static", level, parts=p) for p in parts]
-        return [own, *([Setting("static", lower_level, parts=1)] for lower_level in lower)]
-    found = _families(look, methods, level)
+        given_level = [Setting("static", level, parts=p) for p in parts]
+        return [given_level, *([Setting("static", lower_level, parts=1)] for lower_level in lower)]
+    families = _families(look, methods, level)
     for lower_level in lower:
         for family in _families(look, methods, lower_level):
             if family[0].events == "located" or family[0].method in ("hht", "generalised_alpha"):
                 continue
             # Every second of the coarse rungs: the error is soon that of the kinematics.
             stable = [s for s in family if s.method != "rk4" or (s.dt or 0.0) <= look.limit]
-            found.append(stable[1:6:2] if family[0].tolerance else stable[:5:2])
-    return found
+            families.append(stable[1:6:2] if family[0].tolerance else stable[:5:2])
+    return families
 
 
 def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[list[Setting]]:
-    found = []
+    families = []
     if "rk4" in methods:
         for events in ("step", "located"):
             steps = list(islice(dividing_steps(look, look.limit), RK4_RUNGS))
@@ -528,16 +528,16 @@ def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[li
                 # A step beyond the limit, to show what happens.
                 parts = int(0.8 * round(look.interval / steps[0]))
                 steps.insert(0, look.interval / max(parts, 1))
-            found.append([Setting("rk4", level, dt=step, events=events) for step in steps])
+            families.append([Setting("rk4", level, dt=step, events=events) for step in steps])
     if "rk45" in methods:
-        found.append([Setting("rk45", level, tolerance=10.0**-e) for e in TOLERANCES])
+        families.append([Setting("rk45", level, tolerance=10.0**-e) for e in TOLERANCES])
     if "auto" in methods:
-        found.append([Setting("auto", level)])
+        families.append([Setting("auto", level)])
     for method in IMPLICIT:
         if method in methods:
             halved = islice(dividing_steps(look, look.interval), IMPLICIT_RUNGS)
-            found.append([Setting(method, level, dt=step) for step in halved])
-    return found
+            families.append([Setting(method, level, dt=step) for step in halved])
+    return families
 
 
 #: The settings of a method that a setting of a study has; the budget and the limit of stability
@@ -545,7 +545,7 @@ def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[li
 OF_SETTING = tuple(name for name in Solver.__annotations__ if name in Setting.__annotations__)
 
 
-def own_setting(column: Structure, given: Solver) -> Setting:
+def own_setting(column: Structure, settings: Solver) -> Setting:
     """Return the setting that a user gives.
 
     Raises
@@ -553,13 +553,13 @@ def own_setting(column: Structure, given: Solver) -> Setting:
     InputError
         If a keyword does not belong to a setting.
     """
-    for name in given:
+    for name in settings:
         if name not in OF_SETTING:
             known = ", ".join(OF_SETTING)
             raise InputError(
                 f"compare_methods: setting: {name!r} is not known; it is one of {known}"
             )
-    fields: dict[str, Any] = {"method": "rk4", **given}
+    fields: dict[str, Any] = {"method": "rk4", **settings}
     if fields["method"] == "rk4":
         fields.setdefault("events", "step")
     return Setting(kinematics=column.kinematics, own=True, **fields)

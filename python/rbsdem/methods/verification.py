@@ -151,8 +151,8 @@ def aisc(loads: str, *, shear: bool, **more: Any) -> Array:
     kind = FrameMember(
         29e3 * KSI, 14.1 * INCH**2, 484 * INCH**4, shear_rigidity=rigidity, name="W14x48"
     )
-    found = strut(kind, 28 * FOOT, KIP * np.array(loads.split(), float), **more)
-    return np.asarray(found / np.repeat([KIP * INCH, INCH], found.size // 2))
+    answers = strut(kind, 28 * FOOT, KIP * np.array(loads.split(), float), **more)
+    return np.asarray(answers / np.repeat([KIP * INCH, INCH], answers.size // 2))
 
 
 def beam_column(shares: ArrayLike, halves: int) -> tuple[str, Callable[[], Array]]:
@@ -172,8 +172,8 @@ def beam_column(shares: ArrayLike, halves: int) -> tuple[str, Callable[[], Array
     def solve() -> Array:
         loads = np.asarray(shares) * critical * KIP
         guide = Elastic(1e9 * kind.modulus * kind.inertia) if halves > 1 else None
-        found = strut(kind, length * INCH, loads, guide, tip=across * KIP)
-        return np.asarray(found / np.repeat([KIP * INCH, INCH], u.size))
+        answers = strut(kind, length * INCH, loads, guide, tip=across * KIP)
+        return np.asarray(answers / np.repeat([KIP * INCH, INCH], u.size))
 
     return " ".join(f"{value:.4g}" for value in (*moments, *sways)), solve
 
@@ -183,7 +183,7 @@ def swaying_portals() -> list[float]:
 
     The beam has their length and inertia. The loads are those that a refusal tells.
     """
-    kind, found = FrameMember(30e9, 1e3, 2e-3), []
+    kind, loads = FrameMember(30e9, 1e3, 2e-3), []
     for base, load in (("pinned", 3.0), ("fixed", 10.0)):
         nodes = [FrameNode(f"N-{i}-1", load_y=-load * 30e9 * 2e-3 / 9.0) for i in (1, 2)]
         try:
@@ -191,8 +191,8 @@ def swaying_portals() -> list[float]:
                        kinematics="pdelta")  # fmt: skip
         except SolveError as error:
             said = re.search(r"under it: ([.e\d-]+) of it", str(error))
-            found.append(load * float(said[1]) if said else 0.0)
-    return found
+            loads.append(load * float(said[1]) if said else 0.0)
+    return loads
 
 
 def slender() -> Array:
@@ -491,9 +491,9 @@ def pipe_column() -> list[float]:
     flexure = [Elastic(2 * k)] + [Elastic(k)] * (n - 1)
     column = Column(length, 1e-3, Elastic(1e9 * k), flexure, n=n, top_mass=5.20 / 386 * MASS,
                     gravity=0.0)  # fmt: skip
-    found = modes(column)
+    shapes = modes(column)
     pushed = cyclic(column, displacement=[INCH]).force[0] / KIP
-    return [pushed, found.omega[0], 1 / found.frequency[0]]
+    return [pushed, shapes.omega[0], 1 / shapes.frequency[0]]
 
 
 def euler_load() -> list[float]:
@@ -538,8 +538,8 @@ def _at(diagram: Any, values: Array, wanted: list[float], units: tuple[float, fl
     """Return axial load and moment between points of a diagram, at each of some other values."""
     order = np.argsort(values)
     pairs = zip((diagram.axial_load, diagram.moment), units, strict=True)
-    found = [np.interp(wanted, values[order], one[order]) / unit for one, unit in pairs]
-    return np.ravel(np.column_stack(found))
+    values_at = [np.interp(wanted, values[order], axis[order]) / unit for axis, unit in pairs]
+    return np.ravel(np.column_stack(values_at))
 
 
 def eight_bars() -> Array:
@@ -550,9 +550,9 @@ def eight_bars() -> Array:
         0.5, 0.5, Concrete(35e6), bars=bars, bar_diameter=0.025, cover=0.04,
         ties=Ties(0.01, 0.1, steel, legs=3),
     )  # fmt: skip
-    found = interaction(section, "aci318")
+    diagram = interaction(section, "aci318")
     axes = [0.5, 0.4375, 0.247642, 0.164062, 0.158133]
-    return _at(found, found.neutral_axis, axes, (1e3, 1e3))
+    return _at(diagram, diagram.neutral_axis, axes, (1e3, 1e3))
 
 
 def spcolumn() -> list[float]:
@@ -567,10 +567,10 @@ def spcolumn() -> list[float]:
     section = RectangularSection(
         side, side, Concrete(5e3 * psi), bars=bars, bar_diameter=1.128 * INCH
     )
-    found = interaction(section, "aci318", points=200)
-    numbers = _at(found, found.tension_strain, [0.0, 60 / 29000, 0.005], units)
-    ends = found.axial_load[[-1, 0]] / KIP
-    return [*numbers, found.moment_at(0.0) / units[1], *ends]
+    diagram = interaction(section, "aci318", points=200)
+    numbers = _at(diagram, diagram.tension_strain, [0.0, 60 / 29000, 0.005], units)
+    ends = diagram.axial_load[[-1, 0]] / KIP
+    return [*numbers, diagram.moment_at(0.0) / units[1], *ends]
 
 
 def shed() -> list[float]:
@@ -772,51 +772,52 @@ class Verification(Tabular):
     @property
     def holds(self) -> bool:
         """Whether every number is inside the printed digits, or explained by a remark."""
-        return all(one.holds for one in self.comparisons)
+        return all(comparison.holds for comparison in self.comparisons)
 
     def worst(self) -> Verification:
         """Return the number of each problem that differs most, in units of its last digit."""
-        found: dict[Problem, PrintedValue] = {}
-        for one in self.comparisons:
-            if one.problem not in found or abs(one.units) > abs(found[one.problem].units):
-                found[one.problem] = one
-        return Verification(tuple(found.values()))
+        worst: dict[Problem, PrintedValue] = {}
+        for each in self.comparisons:
+            worst[each.problem] = max(
+                worst.get(each.problem, each), each, key=lambda c: abs(c.units)
+            )
+        return Verification(tuple(worst.values()))
 
     def to_pandas(self) -> DataFrame:
         """Return a row for each number: problem, source, quantity, both numbers, verdict."""
         return data_frame(
             {
-                "problem": [one.problem.name for one in self.comparisons],
-                "source": [one.problem.source for one in self.comparisons],
-                "what": [one.problem.what for one in self.comparisons],
-                "printed": [one.printed for one in self.comparisons],
-                "rbsdem": [_shown(one) for one in self.comparisons],
-                "difference": [f"{100 * one.difference:+.2g} %" for one in self.comparisons],
-                "verdict": [_verdict(one) for one in self.comparisons],
+                "problem": [each.problem.name for each in self.comparisons],
+                "source": [each.problem.source for each in self.comparisons],
+                "what": [each.problem.what for each in self.comparisons],
+                "printed": [each.printed for each in self.comparisons],
+                "rbsdem": [_shown(each) for each in self.comparisons],
+                "difference": [f"{100 * each.difference:+.2g} %" for each in self.comparisons],
+                "verdict": [_verdict(each) for each in self.comparisons],
             }
         )
 
     def __repr__(self) -> str:
         numbers = len(self.comparisons)
-        inside = sum(one.inside for one in self.comparisons)
-        failed = numbers - sum(one.holds for one in self.comparisons)
+        inside = sum(each.inside for each in self.comparisons)
+        failed = numbers - sum(each.holds for each in self.comparisons)
         return (
-            f"Verification({len({one.problem for one in self.comparisons})} problems, "
+            f"Verification({len({each.problem for each in self.comparisons})} problems, "
             f"{numbers} numbers: {inside} inside the printed digits, "
             f"{numbers - inside - failed} explained, {failed} wrong)"
         )
 
 
-def _shown(one: PrintedValue) -> str:
+def _shown(comparison: PrintedValue) -> str:
     """Return the number with one digit more than is printed."""
-    digits = one.printed.lower().partition("e")[0].lstrip("-").replace(".", "").lstrip("0")
-    return f"{one.value:#.{max(len(digits), 1) + 1}g}".rstrip(".")
+    digits = comparison.printed.lower().partition("e")[0].lstrip("-").replace(".", "").lstrip("0")
+    return f"{comparison.value:#.{max(len(digits), 1) + 1}g}".rstrip(".")
 
 
-def _verdict(one: PrintedValue) -> str:
-    if one.inside:
+def _verdict(comparison: PrintedValue) -> str:
+    if comparison.inside:
         return "printed digits"
-    return one.problem.remark if one.holds else "wrong"
+    return comparison.problem.remark if comparison.holds else "wrong"
 
 
 def verify(problems: Sequence[str] | None = None) -> Verification:
@@ -840,20 +841,20 @@ def verify(problems: Sequence[str] | None = None) -> Verification:
     wanted = PROBLEMS
     if problems is not None:
         begins = _arguments.several(problems, "verify: problems", "names")
-        wanted = [one for one in PROBLEMS if one.name.lower().startswith(_lower(begins))]
+        wanted = [each for each in PROBLEMS if each.name.lower().startswith(_lower(begins))]
         for name in _lower(begins):
-            if not any(one.name.lower().startswith(name) for one in wanted):
-                names = ", ".join(dict.fromkeys(one.name for one in PROBLEMS))
+            if not any(problem.name.lower().startswith(name) for problem in wanted):
+                names = ", ".join(dict.fromkeys(problem.name for problem in PROBLEMS))
                 raise InputError(f"verify: there is no problem {name!r}; there are {names}")
-    found = []
+    comparisons: list[PrintedValue] = []
     for problem in wanted:
         printed = problem.printed.split()
         with notes_off():
             values = np.ravel(problem.solve()).astype(float).tolist()
         if len(values) != len(printed) or not all(map(math.isfinite, values)):
             raise AssertionError(f"{problem.name}: {values} for {problem.printed}")
-        found += [PrintedValue(problem, *pair) for pair in zip(printed, values, strict=True)]
-    return Verification(tuple(found))
+        comparisons += [PrintedValue(problem, *pair) for pair in zip(printed, values, strict=True)]
+    return Verification(tuple(comparisons))
 
 
 def _lower(names: Sequence[str]) -> tuple[str, ...]:

@@ -54,7 +54,7 @@ class Damping:
             raise InputError("damping: modal is empty; give a ratio, or None")
         # A single ratio is for all modes, whether it is in a list or not.
         modal = ratios.tolist()[0] if ratios.size == 1 else tuple(ratios.tolist())
-        object.__setattr__(self, "modal", modal)
+        _arguments.put(self, modal=modal)
 
     @property
     def acts(self) -> bool:
@@ -218,12 +218,12 @@ class Footing:
         _arguments.convert(self, "footing")
 
     def __repr__(self) -> str:
-        given = (
+        parts = (
             f"{part.name}={getattr(self, part.name)!r}"
             for part in fields(self)
             if getattr(self, part.name) != part.default
         )
-        return f"Footing({', '.join(given)})"
+        return f"Footing({', '.join(parts)})"
 
     def keys(self) -> dict[str, Any]:
         """Return the keys of the column that state the footing."""
@@ -358,24 +358,23 @@ class Column:
         _made: ClassVar[_core.Made]
 
     def __post_init__(self) -> None:
-        def put(name: str, value: Any) -> None:
-            object.__setattr__(self, name, value)
-
         _arguments.convert(self, "column")
         for name in _LISTS:
             if getattr(self, name) is not None:
-                put(name, _parts(getattr(self, name), name))
+                _arguments.put(self, **{name: _parts(getattr(self, name), name)})
         joints = self.n + (self.top == "fixed")
-        put("shear", _springs(self.shear, "shear", joints))
-        put("flexure", _springs(self.flexure, "flexure", joints))
+        _arguments.put(self, shear=_springs(self.shear, "shear", joints))
+        _arguments.put(self, flexure=_springs(self.flexure, "flexure", joints))
         if self.axial_spring is not None:
-            put("axial_spring", _springs(self.axial_spring, "axial_spring", joints))
+            _arguments.put(self, axial_spring=_springs(self.axial_spring, "axial_spring", joints))
         for name in ("shear", "flexure"):
             _refuse_whole(getattr(self, name), name, joints)
         if self.damping is not None and not isinstance(self.damping, Damping):
-            put("damping", Damping(modal=_arguments.number(self.damping, "column: damping")))
+            _arguments.put(
+                self, damping=Damping(modal=_arguments.number(self.damping, "column: damping"))
+            )
         # Once for all analyses, as a frozen column does not change.
-        put("_made", _core.Made(self._state()))
+        _arguments.put(self, _made=_core.Made(self._state()))
         for note in self._made.text.splitlines() if NOTES_ON.get() else ():
             warn(note)
 
@@ -505,8 +504,8 @@ class Column:
             "top_mass": bool(self.top_mass or self.top_inertia),
             "axial_height": self.axial_height is not None,
         }
-        for name, given in refused.items():
-            if given:
+        for name, value in refused.items():
+            if value:
                 raise InputError(
                     f"double_curvature: the column must be a plain cantilever, without {name}; "
                     "give the ends of the whole column afterwards, with dataclasses.replace"
@@ -568,8 +567,8 @@ def bodies(column: Column) -> tuple[list[float], list[float], list[float]]:
     Those of a column without mass are zero.
     """
     n, mass = column.n, column.mass or 0.0
-    given = (column.lengths, column.masses, column.rotary_inertia)
-    lengths, masses, inertias = (list(cast("tuple[float, ...]", each or ())) for each in given)
+    lists = (column.lengths, column.masses, column.rotary_inertia)
+    lengths, masses, inertias = (list(cast("tuple[float, ...]", each or ())) for each in lists)
     lengths = lengths or [column.height / n] * n
     masses = masses or [mass * length / column.height for length in lengths]
     inertias = inertias or [

@@ -115,9 +115,9 @@ class FrameMember:
                 )
         else:
             rigid = _arguments.number(rigid, "FrameMember: rigid_end")
-        object.__setattr__(self, "rigid_end", rigid)
+        _arguments.put(self, rigid_end=rigid)
         for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
-            object.__setattr__(self, name, _by_position(getattr(self, name), name, usual))
+            _arguments.put(self, **{name: _by_position(getattr(self, name), name, usual)})
 
     @classmethod
     def rigid(cls, **more: Any) -> FrameMember:
@@ -183,27 +183,27 @@ class FrameMember:
 
 
 def _by_position(
-    given: Any, name: str, usual: tuple[float, ...]
+    stated: Any, name: str, usual: tuple[float, ...]
 ) -> tuple[tuple[float, Spring], ...] | None:
     """Return springs by their positions, from one, one for each usual position, or a mapping."""
-    springs: Any = given
-    if given is None:
+    springs: Any = stated
+    if stated is None:
         return None
-    if isinstance(given, Mapping):
+    if isinstance(stated, Mapping):
         springs = [
             (_arguments.number(position, f"FrameMember: {name}"), spring)
-            for position, spring in given.items()
+            for position, spring in stated.items()
         ]
-    elif isinstance(given, Spring):
-        springs = [(position, given) for position in usual]
+    elif isinstance(stated, Spring):
+        springs = [(position, stated) for position in usual]
     else:
-        springs = _arguments.several(given, f"FrameMember: {name}", "springs")
-        if len(springs) == len(usual) and all(isinstance(one, Spring) for one in springs):
+        springs = _arguments.several(stated, f"FrameMember: {name}", "springs")
+        if len(springs) == len(usual) and all(isinstance(spring, Spring) for spring in springs):
             springs = list(zip(usual, springs, strict=True))
     for item in springs:
         if not (isinstance(item, tuple) and len(item) == 2 and isinstance(item[1], Spring)):
             raise InputError(
-                f"FrameMember: {name} = {_arguments.shown(given)} must be a spring, "
+                f"FrameMember: {name} = {_arguments.shown(stated)} must be a spring, "
                 "one for each end, or a mapping from positions (0 to 1) to springs"
             )
     return tuple(sorted(springs, key=lambda item: item[0]))
@@ -262,7 +262,7 @@ class FrameNode:
         _arguments.convert(self, "FrameNode")
         if self.support:
             support = _arguments.choice(self.support, "FrameNode: support", _SUPPORTS)
-            object.__setattr__(self, "support", support)
+            _arguments.put(self, support=support)
 
     def _groups(self, **more: str | None) -> list[Any]:
         """Return the groups of a case file; `more` are names that a building gives it."""
@@ -465,8 +465,8 @@ class MemberGeometry:
         `first` and `last` are the moments of its ends, clockwise on the member [N m]; `shares` are
         positions from 0 to 1.
         """
-        one, two = np.asarray(first, float), np.asarray(last, float)
-        return parabola(one, two, self.hung, np.asarray(shares, float))
+        start, end = np.asarray(first, float), np.asarray(last, float)
+        return parabola(start, end, self.hung, np.asarray(shares, float))
 
     def shear(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
         """Return shear forces along the clear length: the loss of moment per length [N]."""
@@ -517,21 +517,21 @@ def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
             f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
         )
     numbers = []
-    for given, words in zip(pair, (_SIDES, ()), strict=True):
-        if isinstance(given, str):
-            if given not in words:
+    for word, words in zip(pair, (_SIDES, ()), strict=True):
+        if isinstance(word, str):
+            if word not in words:
                 raise InputError(
-                    f"frame: {name}: {given!r} is not known; a pair has numbers, 0 for all, tuples "
+                    f"frame: {name}: {word!r} is not known; a pair has numbers, 0 for all, tuples "
                     'of numbers, and for lines and bays "outer" or "inner"'
                 )
             outer = list(dict.fromkeys((1, lines)))
-            numbers.append(outer if given == "outer" else list(range(2, lines)))
+            numbers.append(outer if word == "outer" else list(range(2, lines)))
         else:
-            several = given if isinstance(given, (tuple, range)) else (given,)
+            several = word if isinstance(word, (tuple, range)) else (word,)
             numbers.append(
                 [
-                    one if type(one) is int else _arguments.integer(one, f"frame: {name}")
-                    for one in several
+                    number if type(number) is int else _arguments.integer(number, f"frame: {name}")
+                    for number in several
                 ]
             )
     return [(at, storey) for storey in numbers[1] for at in numbers[0]]
@@ -573,12 +573,12 @@ def rules_of(
 
 def at_place(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
     """Return what stands in a place of a grid: the last cell that fits, None without one."""
-    found = [one for (at, level), one in cells.items() if at in (0, i) and level in (0, k)]
-    return found[-1] if found else None
+    kinds = [kind for (at, level), kind in cells.items() if at in (0, i) and level in (0, k)]
+    return kinds[-1] if kinds else None
 
 
 def cells_of(
-    given: Any, name: str, kind: type, lines: int, *, halves: type | None = None
+    drawn: Any, name: str, kind: type, lines: int, *, halves: type | None = None
 ) -> dict[tuple[int, int], Any]:
     """Return the cells of a grid by pairs of line or bay and storey, 0 for all, in their order.
 
@@ -588,23 +588,23 @@ def cells_of(
     kinds = f"{article} {kind.__name__}"
     if halves is not None:
         kinds = f"a {halves.__name__}, a pair of them, {kinds}"
-    items = given.items() if isinstance(given, Mapping) else [((0, 0), given)]
-    found: dict[tuple[int, int], Any] = {}
-    for pair, one in () if given is None else items:
+    items = drawn.items() if isinstance(drawn, Mapping) else [((0, 0), drawn)]
+    by_place: dict[tuple[int, int], Any] = {}
+    for pair, cell in () if drawn is None else items:
         places = places_of(pair, name, lines)
-        paired = halves is not None and isinstance(one, (tuple, list)) and len(one) == 2
-        parts = tuple(one) if paired else (one,)
-        if one is not None and not (
-            isinstance(one, kind) or (halves and all(isinstance(part, halves) for part in parts))
+        paired = halves is not None and isinstance(cell, (tuple, list)) and len(cell) == 2
+        parts = tuple(cell) if paired else (cell,)
+        if cell is not None and not (
+            isinstance(cell, kind) or (halves and all(isinstance(part, halves) for part in parts))
         ):
             raise InputError(
-                f"frame: {name} = {_arguments.shown(one)} must be {kinds}, or a mapping from pairs "
-                "(line or bay, storey), 0 for all, to these"
+                f"frame: {name} = {_arguments.shown(cell)} must be {kinds}, or a mapping from "
+                "pairs (line or bay, storey), 0 for all, to these"
             )
         for place in places:
-            found.pop(place, None)
-            found[place] = parts if paired else one
-    return found
+            by_place.pop(place, None)
+            by_place[place] = parts if paired else cell
+    return by_place
 
 
 def index_of(name: str, names: tuple[str, ...], what: str) -> int:
@@ -631,13 +631,13 @@ def stated(kind: FrameMember) -> NamedKind:
 
 def names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
     """Return the names of kinds of members, made up where there is none."""
-    given = dict.fromkeys(map(stated, kinds))
+    statements = dict.fromkeys(map(stated, kinds))
     names: dict[NamedKind, str] = {}
-    taken = {name for name, _ in given}
-    for name, own in given:
+    taken = {name for name, _ in statements}
+    for name, statement in statements:
         numbers = (f"kind-{i}" for i in count(len(names) + 1))
-        names[name, own] = name or next(one for one in numbers if one not in taken)
-        taken.add(names[name, own])
+        names[name, statement] = name or next(number for number in numbers if number not in taken)
+        taken.add(names[name, statement])
     return names
 
 
@@ -691,5 +691,5 @@ def with_rigid_end(kind: FrameMember, rigid_end: float | tuple[float, float]) ->
         return kind
     # Its other fields are checked already.
     other = copy(kind)
-    object.__setattr__(other, "rigid_end", rigid_end)
+    _arguments.put(other, rigid_end=rigid_end)
     return other

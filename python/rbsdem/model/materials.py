@@ -125,11 +125,11 @@ class Steel:
     def __post_init__(self) -> None:
         _arguments.convert(self, "steel")
         if given(self.fu) is None:
-            object.__setattr__(self, "fu", Derived(1.5 * self.fy))
+            _arguments.put(self, fu=Derived(1.5 * self.fy))
         if given(self.eps_sh) is None:
             # A modulus that is not positive is refused below.
             strain = self.fy / self.es if self.es > 0.0 else 0.0
-            object.__setattr__(self, "eps_sh", Derived(max(0.007, strain)))
+            _arguments.put(self, eps_sh=Derived(max(0.007, strain)))
         _core.check_law("steel_response", *self.statement())
 
     def statement(self, number: int | None = None) -> _core.Statement:
@@ -226,9 +226,9 @@ class Layout:
         numbers : mapping
             The numbers of the steels.
         """
-        own = {field.name: getattr(self, field.name) for field in fields(self)}
-        steels = {key: numbers[value] for key, value in own.items() if isinstance(value, Steel)}
-        return _core.group(name, own | steels)
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        steels = {key: numbers[value] for key, value in values.items() if isinstance(value, Steel)}
+        return _core.group(name, values | steels)
 
     def bars(self, shape: str, depth: float, inset: float) -> list[Bar]:
         """Return the bars in a "rectangle" or a "circle" of a depth; see the two functions."""
@@ -444,7 +444,7 @@ class Ties:
     def __post_init__(self) -> None:
         _arguments.convert(self, "ties")
         if given(self.legs_across) is None:
-            object.__setattr__(self, "legs_across", Derived(self.legs))
+            _arguments.put(self, legs_across=Derived(self.legs))
         _check_positive(self, "ties", diameter="m", spacing="m", legs="", legs_across="")
         _check_bar(self, "ties", "diameter")
 
@@ -564,8 +564,8 @@ def _check_positive(record: object, who: str, **units: str) -> None:
     for name, unit in units.items():
         value = getattr(record, name)
         if value is not None and not 0 < value < math.inf:
-            given = f"{who}: {name} = {value} {unit}".rstrip()
-            raise InputError(f"{given} must be finite and above zero")
+            told = f"{who}: {name} = {value} {unit}".rstrip()
+            raise InputError(f"{told} must be finite and above zero")
 
 
 def _check_bar(record: object, who: str, *names: str) -> None:

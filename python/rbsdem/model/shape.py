@@ -219,13 +219,10 @@ class Section(_Fields, ABC):
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
         """Return x, y and diameter of bars of which y and diameter are given [m]."""
 
-    def _set(self, name: str, value: object) -> None:
-        object.__setattr__(self, name, value)
-
     def _set_default(self, name: str, otherwise: float | None) -> None:
         """Set a size that follows from another unless it is given."""
         if given(getattr(self, name)) is None:
-            self._set(name, None if otherwise is None else Derived(otherwise))
+            _arguments.put(self, **{name: None if otherwise is None else Derived(otherwise)})
 
     def _check_wall(self, name: str, size: float, what: str, cover: float) -> None:
         """Refuse a wall that leaves no void, or that hoops with their cover fill."""
@@ -248,11 +245,11 @@ class Section(_Fields, ABC):
         if self.inner_layout is not None and self.wall is None:
             raise InputError("section: inner_layout is around a void; give wall, or remove it")
         self._take_bars(self.cover, self.ties)
-        given = {"cover": self.cover, "side_cover": self.side_cover, "strips": self.strips}
-        given["bar_diameter"] = self.bar_diameter if self.bars else None
-        self._set("_statement", self._stated(self._sizes() | given, self.bars, {}))
+        sizes = {"cover": self.cover, "side_cover": self.side_cover, "strips": self.strips}
+        sizes["bar_diameter"] = self.bar_diameter if self.bars else None
+        _arguments.put(self, _statement=self._stated(self._sizes() | sizes, self.bars, {}))
         answer = _core.evaluate("check_section", self._statement)
-        self._set("_figures", _core.named("section", answer.values))
+        _arguments.put(self, _figures=_core.named("section", answer.values))
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
         """Set the bars, from list or layout, and their diameter."""
@@ -266,9 +263,9 @@ class Section(_Fields, ABC):
             raise InputError(f"section: give {' or '.join(reversed(ways))}, not both")
         if self.layout is not None or self.rows:
             inset = cover + (transverse.diameter if transverse else 0.0)
-            self._set("bars", _LayoutBars(self._lay_out(inset)))
+            _arguments.put(self, bars=_LayoutBars(self._lay_out(inset)))
         else:
-            self._set("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
+            _arguments.put(self, bars=tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
         areas = [area for _, area, _ in self.bars if area > 0.0]
         diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
         mean = np.average(diameters, weights=areas) if areas else None
@@ -523,7 +520,7 @@ class RectangularSection(Section):
     def __post_init__(self) -> None:
         _arguments.convert(self, "section")
         for face in ("top", "bottom"):
-            self._set(face, _rows(getattr(self, face), face))
+            _arguments.put(self, **{face: _rows(getattr(self, face), face)})
         self._set_default("side_cover", self.cover)
         self._check_rows()
         if self.wall is not None:
@@ -971,11 +968,11 @@ def _by_height(bar: Bar) -> tuple[float, float, float]:
     return round(y, 9), area, steel.fy
 
 
-def _rows(given: Any, face: str) -> tuple[Bars, ...]:
+def _rows(bars: Any, face: str) -> tuple[Bars, ...]:
     """Return the rows of a face, of which there may be one alone."""
-    if given is None or isinstance(given, Bars):
-        return () if given is None else (given,)
-    rows = _arguments.several(given, f"section: {face}", "rows of Bars")
+    if bars is None or isinstance(bars, Bars):
+        return () if bars is None else (bars,)
+    rows = _arguments.several(bars, f"section: {face}", "rows of Bars")
     return tuple(
         _arguments.instance(row, f"section: {face}", Bars, "as Bars(4, 0.016)") for row in rows
     )

@@ -85,17 +85,17 @@ class Spring:
 
     def landmarks(self) -> list[Landmark]:
         """Return where the virgin spring cracks, yields and caps, by the table of its rule."""
-        found: list[Landmark] = []
+        points: list[Landmark] = []
         for name, key in self.turns.items():
             for side in filter(self._carries, self.sides):
                 # A side without values of its own has those of the other.
-                own = f"{key}_neg"
-                known = own if side < 0 and getattr(self, own, None) is not None else key
+                negative = f"{key}_neg"
+                known = negative if side < 0 and getattr(self, negative, None) is not None else key
                 above, _, below = known.partition("/")
                 at = getattr(self, above) / (getattr(self, below) if below else 1.0)
                 if at > 0:
-                    found.append(Landmark(name, side, at, known))
-        return found
+                    points.append(Landmark(name, side, at, known))
+        return points
 
     def _carries(self, side: int) -> bool:
         """Whether a side has any strength."""
@@ -155,11 +155,11 @@ class Spring:
             If its rule has no such spring.
         """
         sides = [part.name for part in fields(self) if part.name.endswith("_neg")]
-        own = {name: getattr(self, name) for name in sides}
-        if all(value is None for value in own.values()):
+        negative = {name: getattr(self, name) for name in sides}
+        if all(value is None for value in negative.values()):
             return self
         changes: dict[str, Any] = {}
-        for name, value in own.items():
+        for name, value in negative.items():
             plain = name.removesuffix("_neg")
             changes[name] = getattr(self, plain)
             if value is not None:
@@ -211,7 +211,7 @@ def for_whole_column(spring: AnySpring, place: str) -> AnySpring:
     Spring
         The same spring.
     """
-    object.__setattr__(spring, "_whole_column", place)
+    _arguments.put(spring, _whole_column=place)
     return spring
 
 
@@ -241,8 +241,8 @@ def checked_spring(spring: object, name: str, place: str, more: str = "") -> Spr
     if isinstance(spring, Spring):
         return spring
     names = ", ".join(classes_for(place.removesuffix("_spring")))
-    given = _arguments.shown(spring)
-    raise InputError(f"{name} = {given} must be a spring ({names}){more}")
+    told = _arguments.shown(spring)
+    raise InputError(f"{name} = {told} must be a spring ({names}){more}")
 
 
 @cache
@@ -677,7 +677,7 @@ class Layered(Spring):
             place = _arguments.number(y, f"layered spring: y of layer {number}")
             layer = checked_spring(spring, f"layered spring: layer {number}", "layer")
             layers.append((place, layer))
-        object.__setattr__(self, "layers", tuple(layers))
+        _arguments.put(self, layers=tuple(layers))
         super().__post_init__()
 
     def __repr__(self) -> str:
@@ -708,7 +708,7 @@ class Layered(Spring):
         """Where layers yield in tension, and outer layers of concrete spall, by their places."""
         outer = min(y for y, _ in self.layers), max(y for y, _ in self.layers)
         known: dict[int, list[Landmark]] = {}
-        found = []
+        layers = []
         for y, layer in self.layers:
             if isinstance(layer, ConcreteSpring) and y in outer:
                 gone = layer.d_peak + (layer.f_peak - layer.f_res) / layer.k_soft
@@ -719,8 +719,8 @@ class Layered(Spring):
                     known[id(layer)] = [m for m in marks if m.name == "yield" and m.side > 0]
                 points = known[id(layer)]
             if points:
-                found.append((y, points))
-        return found
+                layers.append((y, points))
+        return layers
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs in series: the layers are split and keep their places."""
@@ -755,8 +755,8 @@ class Layered(Spring):
 
 
 def _response(spring: _core.Statement, path: Array, axial_load: float) -> Array:
-    given = {"axial_load": axial_load, "deformation": path}
-    return _core.evaluate("spring_response", spring, **given).values
+    histories = {"axial_load": axial_load, "deformation": path}
+    return _core.evaluate("spring_response", spring, **histories).values
 
 
 def placed(entries: Iterable[Group | tuple[str, Mapping[str, Any], Spring]]) -> list[Group]:
@@ -807,9 +807,9 @@ class Gauge:
 
     def __post_init__(self) -> None:
         parts = _arguments.several(self.part, "gauge: part", "words")
-        object.__setattr__(self, "part", tuple(parts))
+        _arguments.put(self, part=tuple(parts))
         lengths = _arguments.vector(self.length, "gauge: length")
-        object.__setattr__(self, "length", tuple(lengths.tolist()))
+        _arguments.put(self, length=tuple(lengths.tolist()))
         if len(self.part) != len(self.length):
             raise InputError(
                 f"gauge: {len(self.part)} parts and {len(self.length)} lengths; give one of each "
@@ -894,14 +894,14 @@ class Strains:
         layers : bool, optional
             Whether to write a column for each layer, as ``bar_-0.16``.
         """
-        found = self.columns
+        table = self.columns
         if layers:
-            found = {"time": self.time} | {
+            table = {"time": self.time} | {
                 f"{number}_{part}_{y:g}": self.value[:, number - 1]
                 for number, (part, y) in enumerate(zip(self.part, self.position, strict=True), 1)
             }
         with atomic_write(path) as file:
-            data_frame(found).to_csv(file, index=False, lineterminator="\n")
+            data_frame(table).to_csv(file, index=False, lineterminator="\n")
 
     def __repr__(self) -> str:
         return (

@@ -147,7 +147,7 @@ class Boundary:
             row, two = self.bars, self.bars.number // 2
             each = [2] * two + [1] * (row.number % 2)
             rows = [replace(row, number=number) for number in each]
-            object.__setattr__(self, "bars", tuple(rows))
+            _arguments.put(self, bars=tuple(rows))
         bars: Any = self.bars
         if self._in_rows:
             if any(row.steel is None for row in bars):
@@ -162,11 +162,11 @@ class Boundary:
             )
         # To the nanometre, so that a case file gives them back to the last bit.
         bars = tuple((round(x, 9), area, steel) for x, area, steel in bars)
-        object.__setattr__(self, "bars", bars)
+        _arguments.put(self, bars=bars)
         if given(self.bar_diameter) is None:
             areas = [area for _, area, _ in bars]
             mean = sum(area**1.5 for area in areas) / max(sum(areas), 1e-12)
-            object.__setattr__(self, "bar_diameter", Derived(math.sqrt(4.0 / math.pi) * mean))
+            _arguments.put(self, bar_diameter=Derived(math.sqrt(4.0 / math.pi) * mean))
 
     @property
     def _in_rows(self) -> bool:
@@ -192,8 +192,8 @@ class Boundary:
             places = [0.5 * (first + last)]
         if any(row.clear is not None for row in rows):
             # The face is at the end: x is how far it is from there.
-            found = rows_of_bars(rows, self.length, cover + tie, None)[1]
-            places = [self.length - place for place in found]
+            rows_from_end = rows_of_bars(rows, self.length, cover + tie, None)[1]
+            places = [self.length - place for place in rows_from_end]
         bars = [
             (x, *bar[1:]) for x, row in zip(places, rows, strict=True) for bar in row.at(x, None)
         ]
@@ -283,7 +283,7 @@ class WallSection(Section):
     def __post_init__(self) -> None:
         _arguments.convert(self, "wall")
         if isinstance(self.boundary, list):
-            self._set("boundary", tuple(self.boundary))
+            _arguments.put(self, boundary=tuple(self.boundary))
         if isinstance(self.boundary, tuple) and (
             len(self.boundary) != 2 or not all(isinstance(b, Boundary) for b in self.boundary)
         ):
@@ -292,31 +292,31 @@ class WallSection(Section):
             )
         if self.boundary is not None:
             laid = tuple(end._laid(self.cover) for end in self.ends if end)
-            self._set("boundary", laid if isinstance(self.boundary, tuple) else laid[0])
+            _arguments.put(self, boundary=laid if isinstance(self.boundary, tuple) else laid[0])
         diameters = [float(end.bar_diameter or 0.0) for end in self.ends if end]
         mesh = self.vertical.diameter if self.vertical else None
-        self._set("bar_diameter", max([*diameters, 0.0]) or mesh)
+        _arguments.put(self, bar_diameter=max([*diameters, 0.0]) or mesh)
         placed = self._placed()
-        self._set("bars", tuple(bar[:3] for bar in placed))
+        _arguments.put(self, bars=tuple(bar[:3] for bar in placed))
         single = [(y, math.sqrt(4 * a / math.pi / n)) for y, a, _, n in placed for _ in range(n)]
-        self._set("_single", single)
-        self._set("_statement", self._groups(drawn=False))
+        _arguments.put(self, _single=single)
+        _arguments.put(self, _statement=self._groups(drawn=False))
         answer = _core.evaluate("check_section", self._statement)
-        self._set("_figures", _core.named("section", answer.values))
+        _arguments.put(self, _figures=_core.named("section", answer.values))
 
     def _placed(self) -> list[tuple[float, float, Steel, int]]:
         """Return y, area and steel of bars or rows of the mesh, and how many bars each is."""
         half = 0.5 * self.length
-        found: list[tuple[float, float, Steel, int]] = []
+        placed: list[tuple[float, float, Steel, int]] = []
         lengths = [end.length if end else 0.0 for end in self.ends]
         for end, sign in zip(self.ends, (-1.0, 1.0), strict=True):
             if end is None:
                 continue
             for x, area, steel in end.single:
                 bar = 0.25 * math.pi * float(end.bar_diameter or 0.0) ** 2
-                found.append((sign * (half - x), area, steel, max(1, round(area / bar))))
+                placed.append((sign * (half - x), area, steel, max(1, round(area / bar))))
         if self.vertical is None:
-            return found
+            return placed
         clear, middle = self.length - sum(lengths), 0.5 * (lengths[0] - lengths[1])
         number = round(clear / self.vertical.spacing)
         if number < 1 and clear >= 0.0:
@@ -327,7 +327,7 @@ class WallSection(Section):
         row = self.vertical.area, self.vertical.steel, self.vertical.faces
         # From the middle on, so that rows of a symmetric wall are symmetric to the last bit.
         places = (clear / number * 0.5 * (2 * i + 1 - number) for i in range(number))
-        return found + [(middle + y, *row) for y in places]
+        return placed + [(middle + y, *row) for y in places]
 
     def _groups(self, *, drawn: bool) -> _core.Statement:
         """Return the wall as groups: as it was drawn, or with all bars and with ties for shear."""
@@ -368,12 +368,12 @@ class WallSection(Section):
 
     def __str__(self) -> str:
         """One line, as for other sections."""
-        found = super().__str__()
+        text = super().__str__()
         for end, where in zip(self.ends, ("y < 0", "y > 0"), strict=True):
             if end is not None:
                 hoops = f"hoops {1e3 * end.hoops.spacing:.3g} mm apart" if end.hoops else "no hoops"
-                found += f", boundary of {1e3 * end.length:.4g} mm at {where} with {hoops}"
-        return found
+                text += f", boundary of {1e3 * end.length:.4g} mm at {where} with {hoops}"
+        return text
 
     def _sizes(self) -> dict[str, float]:
         return {"width": self.thickness, "depth": self.length}
@@ -496,7 +496,7 @@ class WallSection(Section):
 
     def inner_legs(self) -> list[Array]:
         """Return the corners of each leg of boundary hoops, and of the horizontal bars [m]."""
-        found = []
+        legs = []
         for end, sign, (length, thickness) in zip(
             self.ends, (-1.0, 1.0), self._thicker(), strict=True
         ):
@@ -508,28 +508,28 @@ class WallSection(Section):
             middle = sign * (0.5 * self.length - self.cover - thick - d)
             along = np.linspace(-b, b, max(2, round(end.hoops.legs_along)))
             across = np.linspace(-d, d, max(2, round(end.hoops.legs_across)))
-            found += [_box(thick, d + thick) + np.array([x, middle]) for x in along]
-            found += [_box(b + thick, thick) + np.array([0.0, middle + y]) for y in across]
+            legs += [_box(thick, d + thick) + np.array([x, middle]) for x in along]
+            legs += [_box(b + thick, thick) + np.array([0.0, middle + y]) for y in across]
         if self.horizontal is not None:
             thick, faces = 0.5 * self.horizontal.diameter, self.horizontal.faces
             b = 0.5 * self.thickness - self.cover - thick if faces > 1 else 0.0
-            found += [
+            legs += [
                 _box(thick, 0.5 * self.length - self.cover) + np.array([x, 0.0])
                 for x in np.linspace(-b, b, faces)
             ]
-        return found
+        return legs
 
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
         """Return x, y and diameter of bars of which y and diameter are given: in rows [m]."""
         placed = []
         half, ends = 0.5 * self.length, self._thicker()
         for zone, thickness in ((-1, ends[0][1]), (0, self.thickness), (1, ends[1][1])):
-            own = [bar for bar in bars if _zone(bar[0], half, ends) == zone]
+            of_zone = [bar for bar in bars if _zone(bar[0], half, ends) == zone]
             end = self.ends[zone > 0] if zone else None
             tie = end.hoops.diameter if end and end.hoops else 0.0
             if zone == 0 and self.horizontal is not None:
                 tie = self.horizontal.diameter
-            placed += _in_rows(own, thickness - 2.0 * (self.cover + tie), self.bar_diameter)
+            placed += _in_rows(of_zone, thickness - 2.0 * (self.cover + tie), self.bar_diameter)
         return placed
 
 

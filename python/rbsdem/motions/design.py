@@ -139,16 +139,16 @@ class DesignSpectrum(Tabular):
         damping : float, optional
             Damping ratio; at 5 % B_1 is 1.
         """
-        short, one = _part_of_g(s_xs, "s_xs"), _part_of_g(s_x1, "s_x1")
+        short, at_1_s = _part_of_g(s_xs, "s_xs"), _part_of_g(s_x1, "s_x1")
         ratio, last = _ratio(damping), _arguments.number(long_period, "long_period", above=0.0)
-        corner = one / short
+        corner = at_1_s / short
         if not corner < last:
             raise InputError(
                 f"s_x1/s_xs = {corner:g} s must be below long_period = {last:g} s; is s_xs in g?"
             )
         factor = 1.0 if ratio == _USUAL else damping_factor(ratio)
         law = partial(_asce_41, short * STANDARD_GRAVITY, corner, last, factor)
-        name = f"ASCE 41 S_XS {short:g}, S_X1 {one:g}, damping {100 * ratio:g} %"
+        name = f"ASCE 41 S_XS {short:g}, S_X1 {at_1_s:g}, damping {100 * ratio:g} %"
         return cls(name, corner, law)
 
     @classmethod
@@ -196,12 +196,14 @@ class DesignSpectrum(Tabular):
         damping : float, optional
             Damping ratio.
         """
-        given = [checked_motion(one) for one in _arguments.several(records, "records", "records")]
-        if not given:
+        motions = [
+            checked_motion(motion) for motion in _arguments.several(records, "records", "records")
+        ]
+        if not motions:
             raise InputError("records is empty; give at least one")
-        spectra = [one.spectrum(_PERIODS, damping).pseudo_acceleration for one in given]
+        spectra = [motion.spectrum(_PERIODS, damping).pseudo_acceleration for motion in motions]
         mean = np.mean(spectra, axis=0)
-        return cls.table(_PERIODS, mean, name=f"mean of {len(given)} records")
+        return cls.table(_PERIODS, mean, name=f"mean of {len(motions)} records")
 
 
 #: Largest accelerations that maps of hazard have, as parts of g.

@@ -143,9 +143,7 @@ class GroundMotion:
                 faults.append(f"{who}: dt = {step:g} s must be above 0 and at most 10 s")
         _arguments.raise_faults(faults)
         values.flags.writeable = False
-        given = {"acceleration": values, "dt": step, "name": name, "description": description}
-        for key, value in given.items():
-            object.__setattr__(self, key, value)
+        _arguments.put(self, acceleration=values, dt=step, name=name, description=description)
 
     @property
     def time(self) -> Array:
@@ -360,15 +358,15 @@ def acting(
                 "given too; give one of them"
             )
         time, loads = None, {**loads, "ground_acceleration": time}
-    given: dict[str, ArrayLike] = {}
+    histories: dict[str, ArrayLike] = {}
     motions: dict[str, GroundMotion] = {}
     for name, load in loads.items():
         if isinstance(load, GroundMotion):
             motions[name] = load
         elif load is not None:
-            given[name] = load
+            histories[name] = load
     if not motions:
-        return time, given
+        return time, histories
     for name in motions:
         if name not in _OF_THE_GROUND:
             raise InputError(
@@ -388,8 +386,8 @@ def acting(
     longest = max(motions.values(), key=lambda motion: motion.acceleration.size)
     size = longest.acceleration.size
     for name, motion in motions.items():
-        given[name] = np.pad(motion.acceleration, (0, size - motion.acceleration.size))
-    return longest.time, {name: given[name] for name in loads if name in given}
+        histories[name] = np.pad(motion.acceleration, (0, size - motion.acceleration.size))
+    return longest.time, {name: histories[name] for name in loads if name in histories}
 
 
 _MOST_DEGREE = 8
@@ -467,8 +465,8 @@ def sequence(
     name : str, optional
         Name of the whole, by default those of the parts, joined.
     """
-    given = _arguments.several(motions, "sequence: motions", "GroundMotion")
-    parts = [checked_motion(motion) for motion in given]
+    records = _arguments.several(motions, "sequence: motions", "GroundMotion")
+    parts = [checked_motion(motion) for motion in records]
     if not parts:
         raise InputError("sequence: there are no motions; give at least one")
     pause = _arguments.number(rest, "sequence: rest", least=0, most=1e6, unit="s")

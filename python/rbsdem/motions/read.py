@@ -470,8 +470,8 @@ def _goes_on(lines: Sequence[str], filled: Sequence[int]) -> bool:
 
 def _about(head: Sequence[str]) -> str:
     """Return station, component and event from lines of key and value."""
-    found = [match for line in head if (match := _ABOUT.match(line))]
-    return ", ".join(dict.fromkeys(match[2].strip() for match in found))
+    matches = [match for line in head if (match := _ABOUT.match(line))]
+    return ", ".join(dict.fromkeys(match[2].strip() for match in matches))
 
 
 def _refuse_other(head: Sequence[str], path: str) -> None:
@@ -677,9 +677,9 @@ def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, 
     path = table.source
     if table.columns == 1 and column is None:
         return None, 0
-    time, found = table.find("time"), table.find("acceleration")
+    time, acceleration = table.find("time"), table.find("acceleration")
     # ACCELERATION TIME SERIES is no time.
-    time = None if time == found else time
+    time = None if time == acceleration else time
     if column is not None:
         value = table.index_of(column, "column")
         if time is None and not any(table.names) and value > 0 and _ascends(table.values[:, 0]):
@@ -694,14 +694,14 @@ def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, 
             )
         return 0, 1
     else:
-        if found is None and table.columns == 2 and time is not None:
-            found = 1 - time
-        if found is None:
+        if acceleration is None and table.columns == 2 and time is not None:
+            acceleration = 1 - time
+        if acceleration is None:
             raise InputError(
                 f"{path}: no column is named after the acceleration, or more than one "
                 f"({table.describe()}); say column=, its name or its number from 1"
             )
-        value = found
+        value = acceleration
     if time is not None and table.units[time].lower() not in _SECONDS:
         raise InputError(
             f"{path}: the times of column {table.names[time]} are not in seconds; convert them "

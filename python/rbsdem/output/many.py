@@ -32,13 +32,13 @@ def ida(found: IDA, *, edp: str | None = None, ax: Axes | None = None, **line: A
     found : IDA
         The analysis.
     edp : str, optional
-        Measure of the response, by default `Runs.drift`.
+        Measure of the response, by default `Runs.drift_measure`.
     ax : matplotlib Axes, optional
         Axes to draw on; by default new ones.
     **line
         Keywords of the lines of the fractiles.
     """
-    edp = edp or found.runs.drift
+    edp = edp or found.runs.drift_measure
     percent = 100.0 if edp.endswith("drift") else 1.0
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         for column, motion in np.ndindex(found.lower.shape):
@@ -70,13 +70,13 @@ def stripes(found: Stripes, *, edp: str | None = None, ax: Axes | None = None, *
     found : Stripes
         The analysis.
     edp : str, optional
-        Measure of the response, by default `Runs.drift`.
+        Measure of the response, by default `Runs.drift_measure`.
     ax : matplotlib Axes, optional
         Axes to draw on; by default new ones.
     **line
         Keywords of the points.
     """
-    edp = edp or found.runs.drift
+    edp = edp or found.runs.drift_measure
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         _points(drawn, found.runs, edp, line)
         if ax is None:

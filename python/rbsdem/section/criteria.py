@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
@@ -110,7 +111,7 @@ def criteria(column: Structure, names: Collection[str] = tuple(WATCHED)) -> Sequ
     if set(WATCHED) <= set(names):
         # Once for all analyses, as a frozen column does not change.
         if "_criteria" not in column.__dict__:
-            object.__setattr__(column, "_criteria", tuple(_criteria(column, names)))
+            _arguments.put(column, _criteria=tuple(_criteria(column, names)))
         every: tuple[Criterion, ...] = column.__dict__["_criteria"]
         return every
     return _criteria(column, names)

@@ -153,14 +153,11 @@ class Frame:
     opens: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        def put(name: str, value: Any) -> None:
-            object.__setattr__(self, name, value)
-
         _arguments.convert(self, "frame")
         for name in ("storeys", "bays"):
             if getattr(self, name) is not None:
                 given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
-                put(name, tuple(given.tolist()))
+                _arguments.put(self, **{name: tuple(given.tolist())})
         for name in ("floor_mass", "beam_load"):
             given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
             if given.size not in (1, len(self.storeys or ())):  # type: ignore[arg-type]
@@ -169,15 +166,18 @@ class Frame:
                     f"{len(self.storeys or ())} storeys; give one, or one for each"  # type: ignore[arg-type]
                 )
             # Floors that are alike are stated once, as a case file has them.
-            put(name, tuple(given.tolist() if np.ptp(given) else given[:1].tolist()))
+            _arguments.put(
+                self, **{name: tuple(given.tolist() if np.ptp(given) else given[:1].tolist())}
+            )
         for name in ("columns", "beams"):
             lines = len(self.bays or ()) + (name == "columns")  # type: ignore[arg-type]
-            put(name, cells_of(getattr(self, name), name, FrameMember, lines) or None)
+            cells = cells_of(getattr(self, name), name, FrameMember, lines)
+            _arguments.put(self, **{name: cells or None})
         for name, kind in (("nodes", FrameNode), ("members", Member)):
             items = tuple(_arguments.several(getattr(self, name), f"frame: {name}", name))
             for item in items:
                 _arguments.instance(item, f"frame: {name}", kind)
-            put(name, items)
+            _arguments.put(self, **{name: items})
         if self.losses is not None:
             if not isinstance(self.losses, Mapping):
                 raise InputError(
@@ -185,10 +185,14 @@ class Frame:
                     "of members to times"
                 )
             losses = self.losses.items()
-            put("losses", {k: _arguments.number(v, "frame: losses") for k, v in losses})
+            _arguments.put(
+                self, losses={k: _arguments.number(v, "frame: losses") for k, v in losses}
+            )
         if self.damping is not None and not isinstance(self.damping, Damping):
-            put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
-        put("_made", _core.Made(self._state()))
+            _arguments.put(
+                self, damping=Damping(modal=_arguments.number(self.damping, "frame: damping"))
+            )
+        _arguments.put(self, _made=_core.Made(self._state()))
         for note in self._made.text.splitlines()[3:] if NOTES_ON.get() else ():
             warn(note)
 
@@ -662,7 +666,7 @@ class Frame:
         struts = [strut for one in grid.infilled(drawing.infills) for strut in one.members()]
         more["members"] = (*drawing.members, *struts)
         frame = cls(heights, widths or None, members[0], members[1] or None, **more)
-        object.__setattr__(frame, "drawing", replace(drawing, made=frame._statement))
+        _arguments.put(frame, drawing=replace(drawing, made=frame._statement))
         return frame
 
     @cached_property

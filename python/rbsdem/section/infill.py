@@ -89,7 +89,7 @@ class Infill:
                     f"Infill: opening = {_arguments.shown(self.opening)} must be its length and "
                     "its height [m], both above 0"
                 )
-            object.__setattr__(self, "opening", tuple(sizes.tolist()))
+            _arguments.put(self, opening=tuple(sizes.tolist()))
 
     def opening_factor(self, length: float, height: float) -> float:
         """Return the share of the force that an opening leaves of a panel with clear sizes [m]."""

@@ -111,7 +111,7 @@ class LayeredModel:
 
     def statement(self) -> _core.Statement:
         """Return the keys of the drawing, as groups of a case file."""
-        own = {
+        keys = {
             "version": _core.Text(self.parameters.version),
             "height": self.height,
             "axial_load": self.axial_load,
@@ -120,7 +120,7 @@ class LayeredModel:
             "restrained": self.restrained,
             "round_core": self.round_core or None,
         }
-        statement = _core.group("drawing", own) + self.section.drawing()
+        statement = _core.group("drawing", keys) + self.section.drawing()
         values = self.parameters.values
         for name in self.parameters.own:
             change = {"name": _core.Text(name), "value": values[name]}
@@ -159,7 +159,7 @@ class LayeredModel:
         """
         values, names = self.parameters.values, tuple(names)
         # Limits of the shear spring take time: they are found only where it changes.
-        of_shear = any("shear" in _made_from(name) for name in names)
+        of_shear = any(_spring_of(name) == "shear" for name in names)
         limits = self.limits if of_shear else self.joint.limits
         for name in names:
             least, most = limits.get(name, (-math.inf, math.inf))
@@ -303,8 +303,8 @@ class LayeredColumn(Column):
         before, now = self._drawing, replace(self._drawing, axial_load=axial_load)
         for name, value in before.fields_for(self.top).items():
             if getattr(self, name) == value:
-                object.__setattr__(self, name, now.fields_for(self.top)[name])
-        object.__setattr__(self, "drawing", now)
+                _arguments.put(self, **{name: now.fields_for(self.top)[name]})
+        _arguments.put(self, drawing=now)
         if now.notes:
             warn("; ".join(now.notes))
 
@@ -336,19 +336,17 @@ class LayeredColumn(Column):
         The bounds end where a value beyond them would change nothing.
         """
         values, limits = self._drawing.parameters.values, self._drawing.limits
-        found = {}
+        offers = {}
         for name, (_, what) in FACTORS.items():
-            found[name] = Parameter(1.0, *_TOGETHER[name], "-", f"factor of {what}")
+            offers[name] = Parameter(1.0, *_TOGETHER[name], "-", f"factor of {what}")
         offered = [row for row in table().values() if row.rank]
         for row in sorted(offered, key=lambda row: row.rank):
             least, most = limits.get(row.name, (0.0, math.inf))
             value = min(max(values[row.name], least), most)
             ends = max(row.low * value, least), min(row.high * value, most)
-            found[row.name] = Parameter(value, *ends, row.unit, row.meaning)
+            offers[row.name] = Parameter(value, *ends, row.unit, row.meaning)
         replaced = self.replaced
-        return {
-            name: one for name, one in found.items() if not set(_made_from(name)) & set(replaced)
-        }
+        return {name: offer for name, offer in offers.items() if _spring_of(name) not in replaced}
 
     def with_parameters(self, **values: float) -> LayeredColumn:
         """Return the column with other parameters of its model; all else stays as it is.
@@ -366,12 +364,11 @@ class LayeredColumn(Column):
         """
         drawing = replace(self._drawing, parameters=self._drawing.parameters.with_values(**values))
         for name in values:
-            for field in _made_from(name):
-                if self._kept(field):
-                    raise InputError(
-                        f"parameters: {name} belongs to springs that were replaced: {field} of "
-                        "this column is not that of its model"
-                    )
+            if self._kept(_spring_of(name)):
+                raise InputError(
+                    f"parameters: {name} belongs to springs that were replaced: "
+                    f"{_spring_of(name)} of this column is not that of its model"
+                )
         # What a factor makes of several is limited, not refused.
         several = {name: FACTORS[name][0] for name in values if name in FACTORS}
         drawing.check(set(values).difference(several, *several.values()))
@@ -450,7 +447,7 @@ def _listed(springs: Any) -> tuple[Any, ...]:
     return tuple(springs) if isinstance(springs, (list, tuple)) else (springs,)
 
 
-def _made_from(name: str) -> tuple[str, ...]:
-    """Return the springs that a parameter belongs to."""
+def _spring_of(name: str) -> str:
+    """Return the field of the column with the springs that a parameter belongs to."""
     of_shear = name.startswith("shear_") and name != "shear_stiffness"
-    return ("shear",) if of_shear else ("flexure",)
+    return "shear" if of_shear else "flexure"

@@ -237,7 +237,7 @@ class Building(Frame):
         of_all = dict(zip(self.parts.members, self.parts.compression.tolist(), strict=True))
         compression = np.array([of_all[prefix + member] for member in own.parts.members])
         found = copy(own)
-        object.__setattr__(found, "kinematics", self.kinematics)
+        _arguments.put(found, kinematics=self.kinematics)
         vars(found)["parts"] = replace(own.parts, compression=compression, mass=self.parts.mass)
         vars(found)["geometry"] = own.geometry
         vars(found)["kinds"] = {
