@@ -16,7 +16,6 @@ program rbsdem
       !> In C: end the process with a status and without printing anything.
       subroutine c_exit(status) bind(c, name='exit')
          import :: c_int
-         implicit none
          integer(c_int), value :: status
       end subroutine c_exit
    end interface

@@ -32,7 +32,6 @@ module rbs_app_progress
       !> In C: 1 if a file descriptor is a terminal.
       integer(c_int) function c_isatty(descriptor) bind(c, name='isatty') result(answer)
          import :: c_int
-         implicit none
          integer(c_int), value :: descriptor
       end function c_isatty
    end interface

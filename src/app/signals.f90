@@ -28,7 +28,6 @@ module rbs_app_signals
       !> In C: set the action on a signal; the result is the action before.
       type(c_funptr) function c_signal(number, action) bind(c, name='signal') result(before)
          import :: c_funptr, c_int
-         implicit none
          integer(c_int), value :: number
          type(c_funptr), value :: action
       end function c_signal
@@ -36,7 +35,6 @@ module rbs_app_signals
       !> In C: send a signal to the process itself; 0 on success.
       integer(c_int) function c_raise(number) bind(c, name='raise') result(status)
          import :: c_int
-         implicit none
          integer(c_int), value :: number
       end function c_raise
    end interface

@@ -75,7 +75,6 @@ module rbs_base_key_visitor
    abstract interface
       subroutine visit_record(self, v)
          import :: key_visitor, visited_record
-         implicit none
          class(visited_record), intent(inout) :: self
          type(key_visitor), intent(inout) :: v
       end subroutine visit_record
@@ -378,8 +377,7 @@ contains
          self%sound = .false.
          name = [(choice_name(key, i), i=1, size(name))]
          call self%messages%add(self%group//': '//trim(key%name)//" = '"//text//"' is not known; it is "// &
-                                'one of '//trim(choice_list(key))// &
-                                suggestion(text, name(:count(name /= ''))))
+                                'one of '//trim(choice_list(key))//suggestion(text, name(:count(name /= ''))))
       case (listing)
          if (.not. allocated(text)) return
          if (text == self%keys(find_key(self%keys(:self%count), key%name))%default_text) return

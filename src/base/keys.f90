@@ -13,8 +13,7 @@ module rbs_base_keys
    implicit none
    private
 
-   public :: key_type, bound_type, check_number, bound_text, find_key, choice_number, choice_name, &
-             choice_list
+   public :: key_type, bound_type, check_number, bound_text, find_key, choice_number, choice_name, choice_list
 
    !> Kinds of values: real number, whole number, logical, word out of a list of choices, free text.
    character(len=1), parameter, public :: real_kind = 'r', integer_kind = 'i', logical_kind = 'l'

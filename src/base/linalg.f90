@@ -12,7 +12,6 @@ module rbs_base_linalg
    interface
       subroutine dptsv(n, nrhs, d, e, b, ldb, info)
          import :: wp
-         implicit none
          integer, intent(in) :: n, nrhs, ldb
          real(wp), intent(inout) :: d(*), e(*), b(ldb, *)
          integer, intent(out) :: info
@@ -20,7 +19,6 @@ module rbs_base_linalg
 
       subroutine dgbsv(n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
          import :: wp
-         implicit none
          integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb
          real(wp), intent(inout) :: ab(ldab, *), b(ldb, *)
          integer, intent(out) :: ipiv(*), info
@@ -28,7 +26,6 @@ module rbs_base_linalg
 
       subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
          import :: wp
-         implicit none
          character(len=1), intent(in) :: trans
          integer, intent(in) :: n, kl, ku, nrhs, ldab, ipiv(*), ldb
          real(wp), intent(in) :: ab(ldab, *)
@@ -38,7 +35,6 @@ module rbs_base_linalg
 
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
-         implicit none
          integer, intent(in) :: n, nrhs, lda, ldb
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
          integer, intent(out) :: ipiv(*), info

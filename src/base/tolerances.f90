@@ -20,6 +20,14 @@ module rbs_base_tolerances
    !> A force below this share of the largest one, or of the yield force, is zero, for the same reason.
    real(wp), parameter, public :: no_force = 1.0e-12_wp
 
+   !> Numbers of the input, and what follows from them in a few steps, that agree to nine digits are meant to
+   !> be the same: places, lengths, times.
+   real(wp), parameter, public :: same_input = 1.0e-9_wp
+
+   !> Half of the digits: a smaller share of a number has few digits of its own, and what it adds to the next
+   !> correction is round-off.
+   real(wp), parameter, public :: half_of_digits = 1.0e-8_wp
+
    !> Lines whose slopes are this close to each other do not meet: their intersection would lose nine digits.
    real(wp), parameter, public :: parallel = 1.0e-9_wp
 

@@ -2,8 +2,7 @@
 module rbs_bindings_runs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use, intrinsic :: iso_c_binding, only: c_double, c_int
-   use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, &
-                             bad_input
+   use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_bindings_exchange, only: request_type, answer_type

@@ -60,25 +60,20 @@ contains
       class(analysis_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      call v%word('method', self%method, &
-                  'method; without it static for displacements and forces without time, auto for motions', &
-                  method_choices())
+      call v%word('method', self%method, 'method; without it static for displacements and forces without '// &
+                  'time, auto for motions', method_choices())
       call v%key('dt', self%dt, 's', above_zero, 'time step; without it chosen by the method', &
                  optional=.true.)
       call v%key('duration', self%duration, 's', above_zero, &
                  'how long the analysis lasts; without it as long as the loading', optional=.true.)
-      call v%word('events', self%events, &
-                  'rk4: springs change their line at the end of a step (step), or where it ends (located)', &
-                  'step located')
-      call v%key('tolerance', self%tolerance, '', possible, &
-                 'rk45, auto: wanted relative error of a step in energy norm; without it 1e-6', &
-                    optional=.true.)
-      call v%key('rho_infinity', self%rho_infinity, '', radius, &
-                 'hht, generalised_alpha: spectral radius at infinite frequency; without it 0.8', &
-                 optional=.true.)
-      call v%key('collapse_drift', self%collapse_drift, '', above_zero, &
-                 'drift at which the structure counts as collapsed, of a storey of a frame or of the top', &
-                 optional=.true.)
+      call v%word('events', self%events, 'rk4: springs change their line at the end of a step (step), or '// &
+                  'where it ends (located)', 'step located')
+      call v%key('tolerance', self%tolerance, '', possible, 'rk45, auto: wanted relative error of a step '// &
+                 'in energy norm; without it 1e-6', optional=.true.)
+      call v%key('rho_infinity', self%rho_infinity, '', radius, 'hht, generalised_alpha: spectral radius '// &
+                 'at infinite frequency; without it 0.8', optional=.true.)
+      call v%key('collapse_drift', self%collapse_drift, '', above_zero, 'drift at which the structure '// &
+                 'counts as collapsed, of a storey of a frame or of the top', optional=.true.)
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
       call v%key('max_seconds', self%max_seconds, 's', above_zero, &
@@ -93,9 +88,8 @@ contains
       type(key_visitor), intent(inout) :: v
 
       call v%long_text('file', self%file, 'path of the csv, from the folder of the case')
-      call v%key('every', self%every, '', one_or_more, &
-                 'every n-th point or step is kept, and the last; without it every point of the loading', &
-                 optional=.true.)
+      call v%key('every', self%every, '', one_or_more, 'every n-th point or step is kept, and the last; '// &
+                 'without it every point of the loading', optional=.true.)
       call v%key('openings', self%openings, &
                  'whether the rows hold the openings of layered joints, from which their layers follow')
       call v%key('motion', self%motion, &

@@ -199,9 +199,8 @@ contains
 
       call v%word('name', self%name, 'name of a drawing of members of a frame; its groups follow it')
       call v%word('version', self%version, 'version of the parameters of the layered model')
-      call v%key('height', self%height, 'm', above_zero, &
-                 'of a column, from an end to where the moment is zero: the height, or half of it under '// &
-                 'a fixed top', optional=.true.)
+      call v%key('height', self%height, 'm', above_zero, 'of a column, from an end to where the moment '// &
+                 'is zero: the height, or half of it under a fixed top', optional=.true.)
       call v%key('axial_load', self%axial_load, 'N', any_number, &
                  'axial load that the springs were drawn for, compression positive', optional=.true.)
       call v%key('shear_span', self%shear_span, 'm', above_zero, &

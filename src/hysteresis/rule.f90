@@ -85,7 +85,6 @@ module rbs_hysteresis_rule
       !> where the motion turned back.
       subroutine next_interface(self, memory, branch, direction)
          import :: rule_type, rule_memory, segment
-         implicit none
          class(rule_type), intent(in) :: self
          class(rule_memory), intent(inout) :: memory
          !> The branch that ends, replaced by its successor
@@ -180,8 +179,10 @@ contains
    end function has_yielded
 
    !> The memory of a virgin spring, and its branch.
-   subroutine start(self, memory, branch)
+   subroutine start(self, axial_load, memory, branch)
       class(rule_type), intent(in) :: self
+      !> Which only layers carry, compression positive [N]
+      real(wp), intent(in) :: axial_load
       class(rule_memory), allocatable, intent(out) :: memory
       type(segment), intent(out) :: branch
 

@@ -9,7 +9,6 @@ module rbs_hysteresis_springs
    use rbs_hysteresis_layer_joints, only: layer_joints
    use rbs_hysteresis_layered_fibre_path, only: go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
-   use rbs_hysteresis_layered_layered_joint, only: start_under
    use rbs_hysteresis_rule, only: spring_slot, spring_rules
    use rbs_hysteresis_segment, only: segment, lowest_on, highest_on, upper_end, lower_end
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
@@ -110,7 +109,7 @@ contains
                 .not. abs(axial_load(i) - axial_load(before)) > 0.0_wp) then
                allocate (self%slot(i)%memory, source=self%slot(before)%memory)
             else
-               call start_under(rule, axial_load(i), self%slot(i)%memory, line)
+               call rule%start(axial_load(i), self%slot(i)%memory, line)
             end if
             call put_line(self, i, line)
             if (rule%uses_flexural_work) self%work_source(:, i) = work_source(:, i)
@@ -137,7 +136,7 @@ contains
       self%events = 0
       self%stuck = .false.
       do i = 1, self%count
-         call start_under(self%slot(i)%rule, axial_load(i), self%slot(i)%memory, line)
+         call self%slot(i)%rule%start(axial_load(i), self%slot(i)%memory, line)
          call put_line(self, i, line)
       end do
       call sum_up_joints(self)

@@ -9,8 +9,7 @@ module rbs_io_posix
 
    public :: c_close, c_dup, c_fclose, c_fileno, c_flock, c_fopen, c_fsync, c_open, c_poll, c_read, &
              c_rename, c_unlink, c_write, poll_type
-   public :: exists, is_folder, is_link, is_special, is_standard_output, is_taken, same_file, &
-             standard_input
+   public :: exists, is_folder, is_link, is_special, is_standard_output, is_taken, same_file, standard_input
 
    !> How `c_open` opens: to read or to write, without waiting for the other end of a pipe. The second part
    !> is the value of Linux; where it differs, as on macOS, a pipe is waited for.
@@ -33,7 +32,6 @@ module rbs_io_posix
       !> In C: open an existing file; -1 if that fails.
       integer(c_int) function c_open(path, flags) bind(c, name='open') result(descriptor)
          import :: c_char, c_int
-         implicit none
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: flags
       end function c_open
@@ -41,21 +39,18 @@ module rbs_io_posix
       !> In C: a second descriptor of an open file; -1 if that fails.
       integer(c_int) function c_dup(descriptor) bind(c, name='dup') result(second)
          import :: c_int
-         implicit none
          integer(c_int), value :: descriptor
       end function c_dup
 
       !> In C: close a descriptor; 0 on success.
       integer(c_int) function c_close(descriptor) bind(c, name='close') result(status)
          import :: c_int
-         implicit none
          integer(c_int), value :: descriptor
       end function c_close
 
       !> In C: read at most `length` bytes: how many, 0 at the end, -1 if nothing can be read now.
       integer(c_size_t) function c_read(descriptor, text, length) bind(c, name='read') result(count)
          import :: c_char, c_int, c_size_t
-         implicit none
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(out) :: text(*)
          integer(c_size_t), value :: length
@@ -64,7 +59,6 @@ module rbs_io_posix
       !> In C: write at most `length` bytes: how many, -1 if nothing can be written now.
       integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write') result(count)
          import :: c_char, c_int, c_size_t
-         implicit none
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(in) :: text(*)
          integer(c_size_t), value :: length
@@ -73,7 +67,6 @@ module rbs_io_posix
       !> In C: wait until a descriptor is ready, for a time in ms or, with -1, for ever; 0 if it is not.
       integer(c_int) function c_poll(what, count, milliseconds) bind(c, name='poll') result(ready)
          import :: c_int, c_size_t, poll_type
-         implicit none
          type(poll_type), intent(inout) :: what
          integer(c_size_t), value :: count
          integer(c_int), value :: milliseconds
@@ -83,49 +76,42 @@ module rbs_io_posix
       !> there and never follows a link.
       type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen') result(stream)
          import :: c_char, c_ptr
-         implicit none
          character(kind=c_char), intent(in) :: path(*), mode(*)
       end function c_fopen
 
       !> In C: the descriptor of a stream.
       integer(c_int) function c_fileno(stream) bind(c, name='fileno') result(descriptor)
          import :: c_int, c_ptr
-         implicit none
          type(c_ptr), value :: stream
       end function c_fileno
 
       !> In C: close a stream; 0 on success.
       integer(c_int) function c_fclose(stream) bind(c, name='fclose') result(status)
          import :: c_int, c_ptr
-         implicit none
          type(c_ptr), value :: stream
       end function c_fclose
 
       !> In C: write a file through to its disk; not 0 on failure, or if the file is not on a disk.
       integer(c_int) function c_fsync(descriptor) bind(c, name='fsync') result(status)
          import :: c_int
-         implicit none
          integer(c_int), value :: descriptor
       end function c_fsync
 
       !> In C: lock a file until the process ends or closes it; 0 on success, -1 if another has the lock.
       integer(c_int) function c_flock(descriptor, how) bind(c, name='flock') result(status)
          import :: c_int
-         implicit none
          integer(c_int), value :: descriptor, how
       end function c_flock
 
       !> In C: remove a file; 0 on success.
       integer(c_int) function c_unlink(path) bind(c, name='unlink') result(status)
          import :: c_char, c_int
-         implicit none
          character(kind=c_char), intent(in) :: path(*)
       end function c_unlink
 
       !> In C: rename a file and replace any file that has the new name; 0 on success.
       integer(c_int) function c_rename(from, to) bind(c, name='rename') result(status)
          import :: c_char, c_int
-         implicit none
          character(kind=c_char), intent(in) :: from(*), to(*)
       end function c_rename
 
@@ -133,7 +119,6 @@ module rbs_io_posix
       !> In C: 0 if a path leads to something.
       integer(c_int) function c_access(path, mode) bind(c, name='access') result(status)
          import :: c_char, c_int
-         implicit none
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: mode
       end function c_access
@@ -141,7 +126,6 @@ module rbs_io_posix
       !> In C: the target of a symbolic link; -1 if the path is no link.
       integer(c_size_t) function c_readlink(path, text, length) bind(c, name='readlink') result(count)
          import :: c_char, c_int, c_size_t
-         implicit none
          character(kind=c_char), intent(in) :: path(*)
          character(kind=c_char), intent(out) :: text(*)
          integer(c_size_t), value :: length
@@ -150,7 +134,6 @@ module rbs_io_posix
       !> In C: the path of an existing file, without links and dots; a null pointer if there is no such file.
       type(c_ptr) function c_realpath(path, real_path) bind(c, name='realpath') result(status)
          import :: c_char, c_ptr
-         implicit none
          character(kind=c_char), intent(in) :: path(*)
          character(kind=c_char), intent(out) :: real_path(*)
       end function c_realpath

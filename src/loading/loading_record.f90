@@ -55,9 +55,8 @@ contains
       class(loading_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      call v%word('drive', self%drive, 'what is prescribed', &
-                  'displacement force ground_acceleration vertical_acceleration axial_load '// &
-                  'ground_acceleration_y')
+      call v%word('drive', self%drive, 'what is prescribed', 'displacement force ground_acceleration '// &
+                  'vertical_acceleration axial_load ground_acceleration_y')
       call v%word('source', self%source, 'where the values come from; without it from what is given', &
                   'file protocol values')
       call v%long_text('file', self%file, 'path of a history, from the folder of the case')

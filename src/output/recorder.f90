@@ -32,7 +32,6 @@ module rbs_output_recorder
    abstract interface
       subroutine update_interface(self, share)
          import :: observer_type, wp
-         implicit none
          class(observer_type), intent(inout) :: self
          !> Share of the run that has been completed, 0 to 1
          real(wp), intent(in) :: share
@@ -41,7 +40,6 @@ module rbs_output_recorder
       !> Take one row, in the order of the channels.
       subroutine record_interface(self, row, error)
          import :: recorder_type, error_type, wp
-         implicit none
          class(recorder_type), intent(inout) :: self
          real(wp), intent(in) :: row(:)
          type(error_type), allocatable, intent(inout) :: error

@@ -108,8 +108,7 @@ contains
       class(bars_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      call v%key('y', self%y, 'm', any_number, 'distance from mid-depth; y > 0 is up in a beam', &
-                 most_bars)
+      call v%key('y', self%y, 'm', any_number, 'distance from mid-depth; y > 0 is up in a beam', most_bars)
       call v%key('area', self%area, 'm2', above_zero, 'area of the bar or row', most_bars)
       call v%key('steel', self%steel, '', any_number, 'numbers of their steels', most_bars)
    end subroutine visit_bars
@@ -144,9 +143,8 @@ contains
       call v%key('steel', self%steel, '', any_number, 'number of the steel')
       if (self%kind == ties) then
          call v%key('legs', self%legs, '', above_zero, 'bars that cross the section along its depth')
-         call v%key('legs_across', self%legs_across, '', above_zero, &
-                    'bars that cross the section along its width; without it as many as legs', &
-                    optional=.true.)
+         call v%key('legs_across', self%legs_across, '', above_zero, 'bars that cross the section along '// &
+                    'its width; without it as many as legs', optional=.true.)
       else
          call v%key('hoops', self%hoops, 'single hoops in place of a spiral')
          if (self%hoops) self%kind = circular_hoops

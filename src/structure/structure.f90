@@ -101,8 +101,9 @@ module rbs_structure_structure
       !> Axial load at the top that is there from the start, compression positive [N]; change of the axial
       !> load at the top per lateral force on a static path
       real(wp) :: axial_load = 0.0_wp, axial_force_ratio = 0.0_wp
-      !> Whether a constant axial force does second-order work, from the load or from the weight
-      logical :: axially_loaded = .false.
+      !> Whether a constant axial force does second-order work, from the load or from the weight; whether all
+      !> springs carry the lateral force and their motions add up to that of the top
+      logical :: axially_loaded = .false., in_series = .false.
       !> Damping in proportion to the mass [1/s] and to the stiffness of the springs [s], the initial one
       !> or that of the present line; the part of the latter that acts in each spring by itself [s]
       real(wp) :: mass_damping = 0.0_wp, stiffness_damping = 0.0_wp, spring_damping = 0.0_wp
@@ -155,7 +156,7 @@ module rbs_structure_structure
       ! Members that fail during a run
       procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
       ! Where deformations follow from the unknowns and the present stiffness of the springs
-      procedure :: linearise, damp, add_damping, size_of_parts, clear_round_off, is_in_series, set_shape
+      procedure :: linearise, damp, add_damping, size_of_parts, clear_round_off, set_shape
       procedure :: work_of_dead_load, spring_of, create_springs, add_ground, base_force, work_of
    end type structure_type
 
@@ -194,7 +195,6 @@ module rbs_structure_structure
    abstract interface
       subroutine gather(self, tangent, dx, dd)
          import :: structure_type, series_tangent, wp
-         implicit none
          class(structure_type), intent(in) :: self
          !> See `linearise`
          type(series_tangent), intent(in) :: tangent(:)
@@ -206,7 +206,6 @@ module rbs_structure_structure
 
       pure subroutine spread_out(self, dd, dx)
          import :: structure_type, wp
-         implicit none
          class(structure_type), intent(in) :: self
          !> (springs)
          real(wp), intent(in), contiguous :: dd(:)
@@ -217,7 +216,6 @@ module rbs_structure_structure
       !> Forces of springs, of loads but the inertia of the moving ground, and of axial forces.
       subroutine collect(self, d, load, axial, tangent, f, g, correction, dead)
          import :: structure_type, series_tangent, wp
-         implicit none
          class(structure_type), intent(in) :: self
          !> Deformations (springs), signals of the loads, axial forces (see `axial_forces`)
          real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
@@ -235,7 +233,6 @@ module rbs_structure_structure
 
       subroutine find_axial_forces(self, load, axial)
          import :: structure_type, wp
-         implicit none
          class(structure_type), intent(in) :: self
          real(wp), intent(in), contiguous :: load(:)
          !> Compression positive, in the order of the structure [N]
@@ -245,7 +242,6 @@ module rbs_structure_structure
       !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
       subroutine assemble_springs(self, k, tangent, band)
          import :: structure_type, series_tangent, wp
-         implicit none
          class(structure_type), intent(in) :: self
          !> Stiffness of the springs, and the tangent of it (see `linearise`)
          real(wp), intent(in), contiguous :: k(:)
@@ -257,7 +253,6 @@ module rbs_structure_structure
       !> Add the geometric stiffness of axial forces to a lower band.
       subroutine assemble(self, k, band)
          import :: structure_type, wp
-         implicit none
          class(structure_type), intent(in) :: self
          !> Axial forces
          real(wp), intent(in), contiguous :: k(:)
@@ -267,14 +262,12 @@ module rbs_structure_structure
 
       pure real(wp) function of_position(self, d)
          import :: structure_type, wp
-         implicit none
          class(structure_type), intent(in) :: self
          real(wp), intent(in), contiguous :: d(:)
       end function of_position
 
       pure subroutine find_rotations(self, d, rotation)
          import :: structure_type, wp
-         implicit none
          class(structure_type), intent(in) :: self
          !> Deformations of the springs, or changes of them (springs)
          real(wp), intent(in), contiguous :: d(:)
@@ -284,7 +277,6 @@ module rbs_structure_structure
 
       subroutine refuse_loads(self, acts, error)
          import :: structure_type, error_type, signals
-         implicit none
          class(structure_type), intent(in) :: self
          !> Which loads act (signals)
          logical, intent(in) :: acts(signals)
@@ -293,7 +285,6 @@ module rbs_structure_structure
 
       pure subroutine list_channels(self, contents, channel)
          import :: structure_type, row_contents, channel_type
-         implicit none
          class(structure_type), intent(in) :: self
          type(row_contents), intent(in) :: contents
          type(channel_type), allocatable, intent(out) :: channel(:)
@@ -301,7 +292,6 @@ module rbs_structure_structure
 
       pure subroutine fill_values(self, contents, response, springs, d, row)
          import :: structure_type, row_contents, response_type, spring_array, wp
-         implicit none
          class(structure_type), intent(in) :: self
          type(row_contents), intent(in) :: contents
          type(response_type), intent(in) :: response
@@ -638,13 +628,6 @@ contains
       !> Of the springs (springs)
       real(wp), intent(inout), contiguous :: dd(:)
    end subroutine clear_round_off
-
-   !> Whether all springs carry the lateral force and their motions add up to that of the top.
-   pure logical function is_in_series(self)
-      class(structure_type), intent(in) :: self
-
-      is_in_series = .false.
-   end function is_in_series
 
    !> A shape of vibration in the order of the structure, with its sign: the masses move to +x.
    subroutine set_shape(self, part, found, shape)

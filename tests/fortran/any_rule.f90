@@ -206,7 +206,7 @@ contains
       type(segment) :: line
 
       call spec%make(rule)
-      call rule%start(memory, line)
+      call rule%start(0.0_wp, memory, line)
       d = unbounded
       if (line%hi > 0.0_wp) d = min(d, line%hi)
       if (line%lo < 0.0_wp) d = min(d, -line%lo)

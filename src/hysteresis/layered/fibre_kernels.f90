@@ -41,9 +41,8 @@ contains
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
    pure subroutine find_ends_ahead(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, &
-                                   opening_rate, &
-                              rotation_rate, &
-                              least_rate, clearance, ahead, nearest, least_clearance, any_unloads, stiffness)
+                                   opening_rate, rotation_rate, least_rate, clearance, ahead, nearest, &
+                                   least_clearance, any_unloads, stiffness)
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)

@@ -16,6 +16,8 @@ module rbs_hysteresis_layered_fibre_path
    integer, parameter :: most_passes = 4
    !> A way beyond this, in units of the rates, is none.
    real(wp), parameter :: beyond = 1.0e100_wp
+   !> A root this close to a corner is on it.
+   real(wp), parameter :: on_corner = 1.0e-14_wp
 
 contains
 
@@ -120,11 +122,10 @@ contains
       real(wp), intent(out) :: least_clearance
 
       call find_ends_ahead(self%count, self%y, self%k, self%lo, self%hi, self%slack, &
-                           self%unload_on_reversal, &
-                      self%both_ways, self%opening, self%rotation, self%opening_rate, self%rotation_rate, &
-                      self%least_rate(self%opening_rate, self%rotation_rate), self%end_tolerance(), &
-                                      self%ahead, &
-                      self%ends%ahead, least_clearance, self%ends%unload_on_reversal, self%ends%stiffness)
+                           self%unload_on_reversal, self%both_ways, self%opening, self%rotation, &
+                           self%opening_rate, self%rotation_rate, self%least_rate(self%opening_rate, &
+                           self%rotation_rate), self%end_tolerance(), self%ahead, self%ends%ahead, &
+                           least_clearance, self%ends%unload_on_reversal, self%ends%stiffness)
    end subroutine distances_ahead
 
    !> Length of the chosen path, ahead and back, until a layer reaches the end of its branch.
@@ -147,9 +148,8 @@ contains
          end if
          if (ends%unload_on_reversal) return
          call find_ends_behind(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, &
-                        self%opening_rate, &
-                        self%rotation_rate, self%least_rate(self%opening_rate, self%rotation_rate), &
-                                                            self%behind, ends%behind)
+                               self%opening_rate, self%rotation_rate, self%least_rate(self%opening_rate, &
+                               self%rotation_rate), self%behind, ends%behind)
          if (ends%behind < beyond) then
             do i = 1, self%count
                if (self%behind(i) <= ends%behind) exit
@@ -210,11 +210,11 @@ contains
             cycle
          end if
          if (j > 0) then
-            if (x < at - 1.0e-14_wp*abs(at)) cycle
+            if (x < at - on_corner*abs(at)) cycle
          end if
          if (j < m) then
             next_at = corner(order(j + 1))
-            if (x > next_at + 1.0e-14_wp*abs(next_at)) cycle
+            if (x > next_at + on_corner*abs(next_at)) cycle
          end if
          if (found .and. abs(x - self%opening_rate) >= abs(best - self%opening_rate)) cycle
          found = .true.

@@ -31,7 +31,7 @@ module rbs_hysteresis_layered_fibre_section
 
    !> A layer this close to an end, relative to the terms of its deformation, is on it; a rate below this
    !> share of its own terms is zero.
-   real(wp), parameter :: on_the_end = 1.0e-13_wp, no_rate = 1.0e-13_wp
+   real(wp), parameter :: on_layer_end = 1.0e-13_wp, no_layer_rate = 1.0e-13_wp
    !> A rate below this is none.
    real(wp), parameter :: least_speed = 1.0e-150_wp
    !> Branches without length that one layer may pass at one point.
@@ -141,7 +141,7 @@ contains
                 self%both_ways(n), self%ahead(n), self%behind(n))
       allocate (self%is_kept(n), source=.false.)
       do i = 1, n
-         call self%rule(self%rule_of(i))%rule%start(self%slot(i)%memory, self%branch(i))
+         call self%rule(self%rule_of(i))%rule%start(0.0_wp, self%slot(i)%memory, self%branch(i))
          call put_branch(self, i)
       end do
       self%reach = maxval(abs(self%y))
@@ -175,11 +175,11 @@ contains
          ! The rear end of a branch that unloads on reversal moves with the layer.
          if (branch%unload_on_reversal <= 0 .and. branch%lo > -unbounded) then
             self%lo(i) = branch%lo
-            self%slack(i) = on_the_end*abs(branch%lo)
+            self%slack(i) = on_layer_end*abs(branch%lo)
          end if
          if (branch%unload_on_reversal >= 0 .and. branch%hi < unbounded) then
             self%hi(i) = branch%hi
-            self%slack(i) = max(self%slack(i), on_the_end*abs(branch%hi))
+            self%slack(i) = max(self%slack(i), on_layer_end*abs(branch%hi))
          end if
       end associate
    end subroutine put_branch
@@ -225,7 +225,7 @@ contains
       must_leave = self%branch(i)%unload_on_reversal == -direction
       if (must_leave) return
       far = self%branch(i)%end_toward(direction)
-      must_leave = direction*(far - self%deformation(i)) <= self%end_tolerance() + on_the_end*abs(far)
+      must_leave = direction*(far - self%deformation(i)) <= self%end_tolerance() + on_layer_end*abs(far)
    end function must_leave
 
    !> Put a layer that moves in a direction on its next branch. `sum_up` is left to the caller.
@@ -244,7 +244,7 @@ contains
    pure real(wp) function end_tolerance(self)
       class(fibre_section), intent(in) :: self
 
-      end_tolerance = on_the_end*(abs(self%opening) + self%reach*abs(self%rotation)) &
+      end_tolerance = on_layer_end*(abs(self%opening) + self%reach*abs(self%rotation)) &
                        + round_off*self%largest
    end function end_tolerance
 
@@ -253,7 +253,7 @@ contains
       class(fibre_section), intent(in) :: self
       real(wp), intent(in) :: opening_rate, rotation_rate
 
-      least_rate = max(no_rate*(abs(opening_rate) + self%reach*abs(rotation_rate)), least_speed)
+      least_rate = max(no_layer_rate*(abs(opening_rate) + self%reach*abs(rotation_rate)), least_speed)
    end function least_rate
 
    !> Move the joint along the chosen path to a rotation (from zero) and an axial load on the present

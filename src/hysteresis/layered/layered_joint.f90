@@ -15,7 +15,7 @@ module rbs_hysteresis_layered_layered_joint
    implicit none
    private
 
-   public :: layered_rule, start_under, branch_under, carries_axial_load, check_axial_load
+   public :: layered_rule, branch_under, carries_axial_load, check_axial_load
 
    !> Most events on the way to the rotation without moment
    integer, parameter :: most_events = 10000
@@ -51,38 +51,24 @@ contains
       self%initial_stiffness = sum(k*(self%y - sum(k*self%y)/sum(k))**2)
    end subroutine prepare
 
-   subroutine start(self, memory, branch)
+   !> The memory of a virgin joint under an axial load, and its branch; an unsymmetric section rotates until
+   !> there is no moment.
+   subroutine start(self, axial_load, memory, branch)
       class(layered_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      call start_under(self, 0.0_wp, memory, branch)
-   end subroutine start
-
-   !> The memory of a virgin spring under an axial load, and its branch. Only layers carry one; an unsymmetric
-   !> section rotates until there is no moment.
-   subroutine start_under(rule, axial_load, memory, branch)
-      class(rule_type), intent(in) :: rule
-      !> Compression positive [N]
       real(wp), intent(in) :: axial_load
       class(rule_memory), allocatable, intent(out) :: memory
       type(segment), intent(out) :: branch
 
-      select type (rule)
-      type is (layered_rule)
-         allocate (fibre_section :: memory)
-         select type (memory)
-         type is (fibre_section)
-            call memory%start(rule%y, rule%weight, rule%rule, rule%rule_of)
-            call go(memory, 0.0_wp, axial_load)
-            memory%carries = .not. memory%failed
-            call find_branch(memory, 1, branch)
-            if (memory%carries) call find_rest(memory, branch)
-         end select
-      class default
-         call rule%start(memory, branch)
+      allocate (fibre_section :: memory)
+      select type (memory)
+      type is (fibre_section)
+         call memory%start(self%y, self%weight, self%rule, self%rule_of)
+         call go(memory, 0.0_wp, axial_load)
+         memory%carries = .not. memory%failed
+         call find_branch(memory, 1, branch)
+         if (memory%carries) call find_rest(memory, branch)
       end select
-   end subroutine start_under
+   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(layered_rule), intent(in) :: self
@@ -205,7 +191,7 @@ contains
       class(rule_memory), allocatable :: memory
       type(segment) :: branch
 
-      call start_under(rule, axial_load, memory, branch)
+      call rule%start(axial_load, memory, branch)
       carries_axial_load = .true.
       select type (memory)
       type is (fibre_section)

@@ -18,11 +18,11 @@ module rbs_hysteresis_rules_concrete
    use rbs_base_check, only: check_order
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: above_zero, not_negative, share_below_one, force, deformation, &
-                            stiffness
+   use rbs_base_keys, only: above_zero, not_negative, share_below_one, force, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_constants, only: unbounded, unset
+   use rbs_base_tolerances, only: parallel, same_input
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -226,7 +226,7 @@ contains
          now%kind = envelope
          do i = 1, size(chord_ends)
             c_next = chord_ends(i)*rule%d_peak
-            if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
+            if (c_next > c*(1.0_wp + same_input)) then
                f_next = now%strength*curve(rule, c_next)
                branch = chord(c, f, c_next, f_next)
                call set_unloading(branch)
@@ -234,7 +234,7 @@ contains
             end if
          end do
          c_flat = rule%d_peak + (rule%f_peak - rule%f_res)/rule%k_soft
-         if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
+         if (c_flat > c*(1.0_wp + same_input)) then
             branch = chord(c, f, c_flat, now%strength*rule%f_res)
          else
             branch = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
@@ -357,7 +357,7 @@ contains
          end if
          ! Both lines from c_0 on.
          meeting = c_0
-         if (rule%k*(1.0_wp - 1.0e-9_wp) > slope) then
+         if (rule%k*(1.0_wp - parallel) > slope) then
             meeting = c_0 + (f_0 - f - rule%k*(c_0 - c))/(rule%k - slope)
          end if
          meeting = max(meeting, now%c_p - now%gap)

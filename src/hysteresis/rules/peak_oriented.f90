@@ -8,6 +8,7 @@ module rbs_hysteresis_rules_peak_oriented
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: same_input
    use rbs_hysteresis_rules_backbone, only: backbone_parameters
    use rbs_hysteresis_rules_capped, only: start_part, next_branch
    use rbs_hysteresis_rules_capped_lines, only: capped_part, capped_memory
@@ -20,9 +21,6 @@ module rbs_hysteresis_rules_peak_oriented
    public :: peak_oriented_rule
 
    character(len=*), parameter :: range_of_source = '(the range of its source)'
-
-   !> Capacities are divided by the energy at yield and multiplied by it.
-   real(wp), parameter :: same_capacity = 1.0e-9_wp
 
    type, extends(rule_type) :: peak_oriented_rule
       !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the
@@ -160,7 +158,7 @@ contains
          real(wp) :: least, unit
 
          least = max(fastest(self%part(1)%given(1)), fastest(self%part(1)%given(-1)))/self%initial_stiffness
-         if (.not. capacity > 0.0_wp .or. capacity >= least*(1.0_wp - same_capacity)) return
+         if (.not. capacity > 0.0_wp .or. capacity >= least*(1.0_wp - same_input)) return
          unit = energy_of(self%part(1))
          call messages%add(name//': '//key//' = '//to_text(capacity/unit)//' must be 0 (it is off) '// &
                            'or at least f_cap**2 (1 + d_cap/d_pc)/(k f_y d_y) = '//to_text(least/unit)// &
@@ -175,8 +173,9 @@ contains
       fastest = side%f_cap**2*(1.0_wp + side%d_cap/side%d_pc)
    end function fastest
 
-   subroutine start(self, memory, branch)
+   subroutine start(self, axial_load, memory, branch)
       class(peak_oriented_rule), intent(in) :: self
+      real(wp), intent(in) :: axial_load
       class(rule_memory), allocatable, intent(out) :: memory
       type(segment), intent(out) :: branch
       integer :: i

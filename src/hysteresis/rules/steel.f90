@@ -15,7 +15,7 @@ module rbs_hysteresis_rules_steel
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_base_tolerances, only: no_stiffness
+   use rbs_base_tolerances, only: no_stiffness, parallel
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -34,12 +34,14 @@ module rbs_hysteresis_rules_steel
    real(wp), parameter :: reaches(12) = [0.0_wp, 0.1_wp, 0.2_wp, 0.4_wp, 0.8_wp, 1.6_wp, 3.2_wp, 6.4_wp, &
                                          12.8_wp, 25.6_wp, 51.2_wp, 102.4_wp]
    integer, parameter :: most_rows = size(reaches) + 2
+   !> Rows whose plastic reaches differ by less are one; a reach this close to a row is on it
+   real(wp), parameter :: same_row = 1.0e-6_wp, on_row = 1.0e-12_wp
    !> Least roundness
    real(wp), parameter :: least_r = 0.8_wp
    !> An element is on its limit if no more than this share of H - L is missing
    real(wp), parameter :: near_limit = 1.0e-13_wp
    !> A limit that moves with at least this share of its element's stiffness carries the element with it
-   real(wp), parameter :: as_fast = 1.0_wp - 1.0e-9_wp
+   real(wp), parameter :: as_fast = 1.0_wp - parallel
 
    !> Limits over k_i d_y in rows of the plastic reach: linear between them, constant after the last.
    type :: table_type
@@ -257,7 +259,7 @@ contains
          ahead = unbounded
          associate (table => self%table)
             do row = 1, table%rows - 1
-               if (q < table%q(row + 1) - 1.0e-12_wp*(2.0_wp + q)) exit
+               if (q < table%q(row + 1) - on_row*(2.0_wp + q)) exit
             end do
             limit = strength*self%d_y*self%k_element*table%y(:, row)
             if (row == table%rows) return
@@ -358,9 +360,9 @@ contains
       real(wp), intent(in) :: q
       integer :: place
 
-      if (q <= 1.0e-6_wp) return
+      if (q <= same_row) return
       place = minloc(abs(table%q(:table%rows) - q), dim=1)
-      if (abs(table%q(place) - q) > 1.0e-6_wp*max(1.0_wp, q)) then
+      if (abs(table%q(place) - q) > same_row*max(1.0_wp, q)) then
          place = count(table%q(:table%rows) < q) + 1
          table%q(place + 1:table%rows + 1) = table%q(place:table%rows)
          table%rows = table%rows + 1

@@ -73,9 +73,8 @@ contains
       call case%column%damping%check('damping', messages)
       call messages%raise(error)
       if (allocated(error)) return
-      call new_frame(frame, case%parts%node, case%parts%member, &
-                     merge(pdelta, small, case%frame%kinematics == 'pdelta'), case%parts%plan, &
-                     case%parts%top, &
+      call new_frame(frame, case%parts%node, case%parts%member, merge(pdelta, small, &
+                     case%frame%kinematics == 'pdelta'), case%parts%plan, case%parts%top, &
                      case%frame%control == 'y')
       frame%by_storeys = frame%storeys > 0 .and. case%frame%collapse == 'storey'
       associate (damping => case%column%damping)
@@ -173,8 +172,7 @@ contains
          ! A floor turns as a whole.
          if (at(2) == 0) at(2) = 1
       end associate
-      call fatal_error(error, bad_input, 'frame: it is a mechanism, '// &
-                       'node '//trim(frame%node_name(at(2)))// &
+      call fatal_error(error, bad_input, 'frame: it is a mechanism, node '//trim(frame%node_name(at(2)))// &
                        ' can '//trim(motion(at(1)))//' without any force; give it a support, a spring or '// &
                        'a stiffer member')
 

@@ -14,7 +14,6 @@ module rbs_solve_ensemble_dispatch
       !> 1: the least that all processors of the family have, 2: AVX2, 3: AVX-512.
       integer(c_int) function processor_level() bind(c, name='rbs_processor_level')
          import :: c_int
-         implicit none
       end function processor_level
    end interface
 

@@ -91,7 +91,6 @@ module rbs_solve_ensemble_lane_arrays
       !> A step of all lanes. Those that have a run and could not take it, or not wholly, are listed.
       subroutine advance_interface(x, y, method, count, list)
          import :: lane_clock, body_arrays, lane_method, lanes
-         implicit none
          type(lane_clock), intent(inout) :: x
          type(body_arrays), intent(inout) :: y
          type(lane_method), intent(in) :: method
@@ -101,7 +100,6 @@ module rbs_solve_ensemble_lane_arrays
       !> After a step of all lanes: the clock and the measures. Lanes whose runs have ended are listed.
       subroutine finish_interface(x, y, m, time, acceleration, count, list)
          import :: lane_clock, body_arrays, lanes, wp
-         implicit none
          type(lane_clock), intent(inout) :: x
          type(body_arrays), intent(inout) :: y
          !> All motions, see `lane_clock%at` [s, m/s2]

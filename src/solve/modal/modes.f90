@@ -35,7 +35,7 @@ module rbs_solve_modal_modes
 
    !> Modes closer than this are made orthogonal to each other, and so many below to the first trial of a
    !> shape, which they would outweigh.
-   real(wp), parameter :: close_by = 1.0e-5_wp
+   real(wp), parameter :: near_shift = 1.0e-5_wp
    integer, parameter :: neighbours = 6
 
    !> Modes that nothing couples with others: all of a frame, slips with rotations or openings of a column
@@ -429,7 +429,7 @@ contains
             d = scale(1.0_wp, -exponent(maxval(abs(d))))*d
             call dynamic%motion(d, self%x)
             do i = column - 1, 1, -1
-               if (i < column - neighbours .and. squares(i) < (1.0_wp - close_by)*shift) exit
+               if (i < column - neighbours .and. squares(i) < (1.0_wp - near_shift)*shift) exit
                call dynamic%motion(shapes(:, i), self%other)
                share = dynamic%mass_product(self%other, self%x)
                self%x = self%x - share*self%other

@@ -29,7 +29,7 @@ module rbs_solve_static_curve
    !> A spring that moves back by less than this share of its deformation has not turned; one that is beyond
    !> its end by less than the second share of its motion is not beyond it, nor a layer by less than the third
    !> of the largest deformation of a layer.
-   real(wp), parameter :: no_motion = 1.0e-10_wp, no_overshoot = 1.0e-9_wp, layer_digits = 1.0e-13_wp
+   real(wp), parameter :: no_return = 1.0e-10_wp, no_overshoot = 1.0e-9_wp, layer_digits = 1.0e-13_wp
 
    type :: curve_type
       !> Change of the parameter from end to end
@@ -199,7 +199,7 @@ contains
       c = cubic_of(self, i)
       share = turns_of(c)
       peak = cubic_at(share, c(1), c(2), c(3), c(4))
-      hides_turn = share(2) < 1.0_wp .and. one_way*(peak(1) - peak(2)) > no_motion*max(abs(c(1)), abs(c(2)))
+      hides_turn = share(2) < 1.0_wp .and. one_way*(peak(1) - peak(2)) > no_return*max(abs(c(1)), abs(c(2)))
    end function hides_turn
 
    !> Deformation of a spring at both ends, and its slopes there by the share of the parameter.

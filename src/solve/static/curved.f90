@@ -21,8 +21,7 @@ module rbs_solve_static_curved
    use rbs_solve_static_curve, only: clean, most_rotation
    use rbs_solve_static_curved_search, only: curve_search, find_event, find_point, find_turn, find_works, &
                                              layer_of, move_to, no_progress, work_of_joint
-   use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, &
-                                    serialize_path
+   use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_structure_structure, only: finite
    implicit none
@@ -72,8 +71,7 @@ contains
       m = column%unknowns
       path%load = load
       call path%equilibrium%create(column, by_force, varies)
-      allocate (path%current%q(m), path%current%rate(m), path%trial%q(m), &
-                path%trial%rate(m), source=0.0_wp)
+      allocate (path%current%q(m), path%current%rate(m), path%trial%q(m), path%trial%rate(m), source=0.0_wp)
       path%structure => column
       path%without_top_load => column
       if (varies) path%without_top_load => path%equilibrium%without_top_load
@@ -101,8 +99,7 @@ contains
          self%row = self%row + 1
          self%equilibrium%driven = [self%control, target - self%control]
          self%equilibrium%load = [self%load_now, self%load(self%row) - self%load_now]
-         if (.not. any(abs([self%equilibrium%driven(2), &
-                           self%equilibrium%load(2)]) > 0.0_wp)) return
+         if (.not. any(abs([self%equilibrium%driven(2), self%equilibrium%load(2)]) > 0.0_wp)) return
          self%current%t = 0.0_wp
          self%goal = 1.0_wp
          self%extent = 1.0_wp
@@ -123,8 +120,7 @@ contains
             if (allocated(error) .or. self%springs%crushed_joint() > 0) return
             self%arrived = 0
             ! A spring that was put on the end of its line left the column a little out of equilibrium.
-            if (self%equilibrium%size_of(self%equilibrium%correction, &
-                                                self%current%q) <= no_progress) then
+            if (self%equilibrium%size_of(self%equilibrium%correction, self%current%q) <= no_progress) then
                self%current%q = self%current%q + self%equilibrium%correction
                self%current%force = self%current%force + self%equilibrium%force_correction
             end if

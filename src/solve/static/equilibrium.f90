@@ -9,12 +9,12 @@
 !> with F' = 1 or u' = 1. K is a band, bordered by p and c where the displacement is driven. The pattern is
 !> that of the lateral load, or the dead load of a frame, which grows from 0 to 1. Deformations that are small
 !> differences of unknowns lose digits; the residual is taken in the deformations and solved for once more.
-!> Joints of a chain that nothing couples have a diagonal K and need no factor.
+!> Joints of a chain in series have a diagonal K and need no factor.
 module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_base_tolerances, only: no_stiffness, hardening_of_none
+   use rbs_base_tolerances, only: no_stiffness, half_of_digits, hardening_of_none
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_spring_location, only: flexure
@@ -34,8 +34,7 @@ module rbs_solve_static_equilibrium
    !> part is free to move.
    real(wp), parameter :: no_more = 1.0_wp
 
-   !> Share of a change that a refinement may add for the next one to be needless, and most refinements.
-   real(wp), parameter :: few_digits = 1.0e-8_wp
+   !> Most refinements.
    integer, parameter :: refinements = 20
 
    !> A displacement, in shares of the height, or a rotation that is no more than round-off.
@@ -62,8 +61,6 @@ module rbs_solve_static_equilibrium
       !> The largest force that was out of equilibrium before the correction, moments over the height [N]
       real(wp) :: unbalance = 0.0_wp
       class(structure_type), pointer, private :: structure => null()
-      !> Whether nothing couples the springs, so that K is diagonal in the deformations
-      logical, private :: in_series = .false.
       type(band_matrix), private :: matrix
       !> Pivots of the initial stiffness (unknowns)
       real(wp), allocatable, private :: pivot(:)
@@ -116,7 +113,6 @@ contains
          end associate
       end do
       if (allocated(structure%reach)) self%reach(:) = structure%reach
-      self%in_series = structure%is_in_series()
       self%tangent = structure%initial_tangent
       allocate (self%pattern(m), self%residual(m), self%load(m), &
                 self%change(m, 2), self%moved(structure%coordinates, 2), self%f(springs), &
@@ -127,7 +123,7 @@ contains
       no_load = 0.0_wp
       if (structure%axially_loaded) call structure%axial_forces(no_load, self%axial)
       if (.not. of_dead_load) self%pattern = structure%pattern(lateral)%force
-      if (self%in_series) return
+      if (structure%in_series) return
       call initial%create(m, structure%half_width)
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, initial%band)
       call self%matrix%create(m, structure%half_width, initial%band(1, :))
@@ -164,7 +160,7 @@ contains
       self%lost_digits = .false.
       self%is_stable = .false.
       residual = displacement - self%structure%top_displacement(springs%d)
-      if (.not. self%in_series) then
+      if (.not. self%structure%in_series) then
          call follow_band(self, springs, by_force, residual, force, rate, found)
          return
       end if
@@ -292,7 +288,7 @@ contains
             self%moved(:, j) = self%moved(:, j) + self%more
             self%change(:, 1) = self%change(:, 1) + self%change(:, 2)
             ! One more would add about the square of this share.
-            if (maxval(abs(self%change(:, 2))) <= few_digits*maxval(abs(self%change(:, 1)))) return
+            if (maxval(abs(self%change(:, 2))) <= half_of_digits*maxval(abs(self%change(:, 1)))) return
          end do
          ! Else round-off is left to correct, or the common motion of parts that are free to move.
          self%lost_digits = regular .and. self%structure%loses_digits .and. j == 1
@@ -378,7 +374,7 @@ contains
       real(wp), intent(in) :: force
       integer :: i
 
-      if (.not. self%in_series) then
+      if (.not. self%structure%in_series) then
          ! Where an element snaps back its last tangent serves.
          call self%structure%linearise(springs%k, self%tangent, self%unstable)
          call find_residual(self, springs, force)

@@ -141,7 +141,6 @@ module rbs_solve_static_path
       !> Go on to a target.
       subroutine advance_interface(self, target, error)
          import :: static_path, error_type, wp
-         implicit none
          class(static_path), intent(inout) :: self
          !> Displacement [m] or force [N]
          real(wp), intent(in) :: target
@@ -151,7 +150,6 @@ module rbs_solve_static_path
       !> Find the rates of the structure on the present lines of its springs.
       subroutine solve_line_interface(self, direction, found)
          import :: static_path
-         implicit none
          class(static_path), intent(inout) :: self
          integer, intent(in) :: direction
          logical, intent(out) :: found
@@ -161,7 +159,6 @@ module rbs_solve_static_path
       !> displacement of the top.
       subroutine balance_interface(self, correction, force, found)
          import :: static_path, wp
-         implicit none
          class(static_path), intent(inout) :: self
          !> Of the deformations (unknowns), and of the lateral force [N]
          real(wp), intent(out) :: correction(:), force
@@ -171,14 +168,12 @@ module rbs_solve_static_path
       !> The largest force by which a joint is out of equilibrium, moments over the height [N].
       real(wp) function unbalance_interface(self)
          import :: static_path, wp
-         implicit none
          class(static_path), intent(inout) :: self
       end function unbalance_interface
 
       !> Save or restore all that the next target depends on, the springs excepted.
       subroutine serialize_interface(self, stream)
          import :: static_path, stream_type
-         implicit none
          class(static_path), intent(inout) :: self
          type(stream_type), intent(inout) :: stream
       end subroutine serialize_interface

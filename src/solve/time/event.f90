@@ -3,6 +3,7 @@
 !> known at both ends of the step, and taken as the parabola through both velocities.
 module rbs_solve_time_event
    use rbs_base_kinds, only: wp
+   use rbs_base_tolerances, only: round_off_of_sums
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
@@ -22,9 +23,6 @@ module rbs_solve_time_event
       !> Time from the start of the step: an estimate, and after which it has certainly happened [s]
       real(wp) :: estimate = 0.0_wp, latest = 0.0_wp
    end type line_exit
-
-   !> An acceleration below this share of those of the single forces is round-off.
-   real(wp), parameter :: least_share = 32.0_wp*epsilon(1.0_wp)
 
    !> The exit of a spring from its line, and the time in the step at which that is expected.
    type, extends(line_exit) :: event_type
@@ -78,7 +76,7 @@ contains
       type(state_type), intent(in) :: state
       integer, intent(in) :: i
 
-      least = least_share*state%motion%structure%acceleration_scale(i, state%springs, state%load)
+      least = round_off_of_sums*state%motion%structure%acceleration_scale(i, state%springs, state%load)
    end function round_off_of
 
    !> A number, zero where it is not above its round-off.

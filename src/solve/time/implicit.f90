@@ -9,6 +9,7 @@ module rbs_solve_time_implicit
    use rbs_base_inner_product, only: inner_product, total
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
    use rbs_solve_one_body_rk4_one_body, only: pdelta_moment_of
    use rbs_solve_time_implicit_finite, only: finite_stepper
@@ -54,7 +55,6 @@ module rbs_solve_time_implicit
       !> Judge the step by the energy that it loses. If it is not found, or if it loses more than a member
       !> that yields, search the state that members snap to.
       module subroutine snap_unless_smooth(self, state)
-         implicit none
          class(implicit_stepper), intent(inout) :: self
          type(state_type), intent(inout) :: state
       end subroutine snap_unless_smooth
@@ -118,191 +118,200 @@ contains
       self%busiest = 0
       self%runaway = 0
       if (associated(state%motion%one_body)) then
-         call take_step_of_one_body()
+         call take_step_of_one_body(self, state)
          if (self%converged) return
       end if
-      call solve_step()
-      if (self%converged) call commit()
+      call solve_step(self, state)
+      if (self%converged) call commit(self, state)
+   end subroutine take_step
 
-   contains
+   !> Take a step of one body. If it is not found so, nothing has happened.
+   subroutine take_step_of_one_body(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp) :: mean(2)
 
-      !> Take a step of one body. If it is not found so, nothing has happened.
-      subroutine take_step_of_one_body()
-         real(wp) :: mean(2)
-
-         associate (step => self%step, body => self%one_body, motion => state%motion, h => self%h, &
-                    load => self%load)
-            body%wanted = self%wanted
-            if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, motion, h)
-            call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
-                                load(lateral), load(horizontal), self%converged)
-            if (.not. self%converged) return
-            mean = 0.5_wp*(state%load(:2) + load(:2))
-            if (motion%acts(lateral)) then
-               state%of_loads = state%of_loads &
-                                + mean(lateral)*(body%moved(1) + body%upper*body%moved(2))
-            end if
-            if (motion%acts(horizontal)) then
-               state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
-            end if
-            if (motion%damped) state%of_damping = state%of_damping + body%work_of_damping(step%v0)
-            ! Both elements one by one: the compiler does not know that there are no more.
-            state%v(1) = body%v1(1) - body%lower*body%v1(2)
-            state%v(2) = body%v1(2)
-            state%q(1) = body%q(1)
-            state%q(2) = body%q(2)
-            state%time = state%time + h
-            state%load = load
-            step%largest(1) = body%scale(1)
-            step%largest(2) = body%scale(2)
-            step%v0(1) = body%v1(1)
-            step%v0(2) = body%v1(2)
-            step%a0(1) = body%a1(1)
-            step%a0(2) = body%a1(2)
-            step%g0(1) = body%g(1)
-            step%g0(2) = body%g(2)
-         end associate
-      end subroutine take_step_of_one_body
-
-      !> Find the end of the step. If it is not found, the springs are as before.
-      subroutine solve_step()
-
-         self%marked = .false.
-         self%weighed = .false.
-         self%ambiguous = .false.
-         call state%motion%set_axial_loads(state%springs, self%load)
-         call find_end()
-         if (self%converged .and. self%ambiguous) call settle()
-         if (self%converged) call self%check_runaway(state)
-         if (.not. self%marked) return
-         if (size(self%step%now%tangent) > 0) then
-            call snap_unless_smooth(self, state)
-            self%weighed = .true.
+      associate (step => self%step, body => self%one_body, motion => state%motion, h => self%h, &
+                 load => self%load)
+         body%wanted = self%wanted
+         if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, motion, h)
+         call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
+                             load(lateral), load(horizontal), self%converged)
+         if (.not. self%converged) return
+         mean = 0.5_wp*(state%load(:2) + load(:2))
+         if (motion%acts(lateral)) then
+            state%of_loads = state%of_loads + mean(lateral)*(body%moved(1) + body%upper*body%moved(2))
          end if
-         if (.not. self%converged) call state%springs%restore()
-         call state%springs%forget_mark()
-      end subroutine solve_step
+         if (motion%acts(horizontal)) then
+            state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
+         end if
+         if (motion%damped) state%of_damping = state%of_damping + body%work_of_damping(step%v0)
+         ! Both elements one by one: the compiler does not know that there are no more.
+         state%v(1) = body%v1(1) - body%lower*body%v1(2)
+         state%v(2) = body%v1(2)
+         state%q(1) = body%q(1)
+         state%q(2) = body%q(2)
+         state%time = state%time + h
+         state%load = load
+         step%largest(1) = body%scale(1)
+         step%largest(2) = body%scale(2)
+         step%v0(1) = body%v1(1)
+         step%v0(2) = body%v1(2)
+         step%a0(1) = body%a1(1)
+         step%a0(2) = body%a1(2)
+         step%g0(1) = body%g(1)
+         step%g0(2) = body%g(2)
+      end associate
+   end subroutine take_step_of_one_body
 
-      !> Find a state in equilibrium.
-      subroutine find_end()
+   !> Find the end of the step. If it is not found, the springs are as before.
+   subroutine solve_step(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
 
-         call self%try_start(state)
-         call self%iterate(state)
-         if (self%converged .or. .not. self%marked) return
-         call state%springs%restore()
-         ! Joints under an axial load that varies have no lines that deformations alone could follow.
-         if (.not. state%springs%axial_load_varies) call go_by_events()
-      end subroutine find_end
+      self%marked = .false.
+      self%weighed = .false.
+      self%ambiguous = .false.
+      call state%motion%set_axial_loads(state%springs, self%load)
+      call find_end(self, state)
+      if (self%converged .and. self%ambiguous) call settle(self, state)
+      if (self%converged) call self%check_runaway(state)
+      if (.not. self%marked) return
+      if (size(self%step%now%tangent) > 0) then
+         call snap_unless_smooth(self, state)
+         self%weighed = .true.
+      end if
+      if (.not. self%converged) call state%springs%restore()
+      call state%springs%forget_mark()
+   end subroutine solve_step
 
-      !> Many states are in equilibrium, as springs without stiffness share a motion. The step goes to the one
-      !> that is nearest to its begin, where a very viscous liquid would lead: else round-off would choose.
-      subroutine settle()
+   !> Find a state in equilibrium.
+   subroutine find_end(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
 
-         if (self%marked) call state%springs%restore()
-         call self%try_start(state)
-         self%step%now%anchor(:) = state%q
-         call self%resist(little)
+      call self%try_start(state)
+      call self%iterate(state)
+      if (self%converged .or. .not. self%marked) return
+      call state%springs%restore()
+      ! Joints under an axial load that varies have no lines that deformations alone could follow.
+      if (.not. state%springs%axial_load_varies) call go_by_events(self, state)
+   end subroutine find_end
+
+   !> Many states are in equilibrium, as springs without stiffness share a motion. The step goes to the one
+   !> that is nearest to its begin, where a very viscous liquid would lead: else round-off would choose.
+   subroutine settle(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+
+      if (self%marked) call state%springs%restore()
+      call self%try_start(state)
+      self%step%now%anchor(:) = state%q
+      call self%resist(little)
+      call self%step%find_residual(state, self%h, self%load, self%residual)
+      call self%iterate(state)
+      call self%resist(0.0_wp)
+      if (self%converged) then
          call self%step%find_residual(state, self%h, self%load, self%residual)
          call self%iterate(state)
-         call self%resist(0.0_wp)
-         if (self%converged) then
-            call self%step%find_residual(state, self%h, self%load, self%residual)
-            call self%iterate(state)
-            if (self%converged) return
+         if (self%converged) return
+      end if
+      if (self%marked) call state%springs%restore()
+      call find_end(self, state)
+   end subroutine settle
+
+   !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
+   !> tangent step is exact, so the residual decreases in proportion to the way. A spring that leaves its
+   !> lines again and again while the residual does not decrease shows that no line leads on from there.
+   subroutine go_by_events(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp) :: share, before, least
+      integer :: i, direction
+
+      before = huge(1.0_wp)
+      least = huge(1.0_wp)
+      call self%try_start(state)
+      do
+         if (self%residual < progress*least) then
+            least = self%residual
+            self%returns = 0
          end if
-         if (self%marked) call state%springs%restore()
-         call find_end()
-      end subroutine settle
-
-      !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
-      !> tangent step is exact, so the residual decreases in proportion to the way. A spring that leaves its
-      !> lines again and again while the residual does not decrease shows that no line leads on from there.
-      subroutine go_by_events()
-         real(wp) :: share, before, least
-         integer :: i, direction
-
-         before = huge(1.0_wp)
-         least = huge(1.0_wp)
-         call self%try_start(state)
-         do
-            if (self%residual < progress*least) then
-               least = self%residual
-               self%returns = 0
-            end if
-            call self%correct(state)
-            call state%springs%joints%open_layers(self%dq)
-            call first_end(self%step%q1, self%dq, share, i, direction)
-            self%step%q1 = self%step%q1 + share*self%dq
-            self%step%moved = self%step%moved + share*self%dx
-            if (i > 0) then
-               self%returns(i) = self%returns(i) + 1
-               self%busiest = i
-               call state%springs%carry_to(self%step%q1)
-               call state%springs%leave(i, direction)
-               self%step%q1(i) = state%springs%d(i)
-               if (state%springs%stuck) return
-               before = huge(1.0_wp)
-            end if
-            call self%step%find_residual(state, self%h, self%load, self%residual)
-            if (i > 0) then
-               if (self%returns(i) <= most_returns) cycle
-               ! About an equilibrium round-off sends springs at their corners to and fro.
-               self%converged = self%residual <= self%acceptable
-               return
-            end if
-            self%converged = self%has_converged(state, before)
-            if (self%converged .or. .not. self%residual < before) return
-            before = self%residual
-         end do
-      end subroutine go_by_events
-
-      !> The share of a correction up to the first end of a line that a spring reaches.
-      subroutine first_end(q, dq, share, first, direction)
-         !> Deformations reached and their correction (unknowns)
-         real(wp), intent(in), contiguous :: q(:), dq(:)
-         !> Share from 0 to 1; the spring, 0 if there is none; its direction
-         real(wp), intent(out) :: share
-         integer, intent(out) :: first, direction
-         real(wp) :: clearance
-         integer :: i
-
-         share = 1.0_wp
-         first = 0
-         direction = 0
-         do i = 1, state%springs%count
-            ! Most springs stay on their lines.
-            if (q(i) + dq(i) >= state%springs%lower(i) .and. q(i) + dq(i) <= state%springs%upper(i)) cycle
-            if (dq(i) > 0.0_wp) then
-               ! The rear end of a one-way line is where the spring was put last.
-               clearance = state%springs%end_toward(i, 1) - q(i)
-            else
-               clearance = q(i) - state%springs%end_toward(i, -1)
-            end if
-            if (clearance >= share*abs(dq(i))) cycle
-            share = max(clearance, 0.0_wp)/abs(dq(i))
-            first = i
-            direction = merge(1, -1, dq(i) > 0.0_wp)
-            if (.not. share > 0.0_wp) return
-         end do
-      end subroutine first_end
-
-      !> The end of the step becomes the state.
-      subroutine commit()
-
-         if (.not. self%weighed) then
-            call self%find_works(state)
+         call self%correct(state)
+         call state%springs%joints%open_layers(self%dq)
+         call first_end(state%springs, self%step%q1, self%dq, share, i, direction)
+         self%step%q1 = self%step%q1 + share*self%dq
+         self%step%moved = self%step%moved + share*self%dx
+         if (i > 0) then
+            self%returns(i) = self%returns(i) + 1
+            self%busiest = i
             call state%springs%carry_to(self%step%q1)
+            call state%springs%leave(i, direction)
+            self%step%q1(i) = state%springs%d(i)
+            if (state%springs%stuck) return
+            before = huge(1.0_wp)
          end if
-         state%of_loads = state%of_loads + self%of_loads
-         state%of_damping = state%of_damping + self%of_damping
-         call swap(state%q, self%step%q1)
-         call swap(state%v, self%step%w1)
-         state%time = state%time + self%h
-         state%load = self%load
-         call self%step%go_on(state)
-      end subroutine commit
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+         if (i > 0) then
+            if (self%returns(i) <= most_returns) cycle
+            ! About an equilibrium round-off sends springs at their corners to and fro.
+            self%converged = self%residual <= self%acceptable
+            return
+         end if
+         self%converged = self%has_converged(state, before)
+         if (self%converged .or. .not. self%residual < before) return
+         before = self%residual
+      end do
+   end subroutine go_by_events
 
-   end subroutine take_step
+   !> The share of a correction up to the first end of a line that a spring reaches.
+   pure subroutine first_end(springs, q, dq, share, first, direction)
+      type(spring_array), intent(in) :: springs
+      !> Deformations reached and their correction (unknowns)
+      real(wp), intent(in), contiguous :: q(:), dq(:)
+      !> Share from 0 to 1; the spring, 0 if there is none; its direction
+      real(wp), intent(out) :: share
+      integer, intent(out) :: first, direction
+      real(wp) :: clearance
+      integer :: i
+
+      share = 1.0_wp
+      first = 0
+      direction = 0
+      do i = 1, springs%count
+         ! Most springs stay on their lines.
+         if (q(i) + dq(i) >= springs%lower(i) .and. q(i) + dq(i) <= springs%upper(i)) cycle
+         if (dq(i) > 0.0_wp) then
+            ! The rear end of a one-way line is where the spring was put last.
+            clearance = springs%end_toward(i, 1) - q(i)
+         else
+            clearance = q(i) - springs%end_toward(i, -1)
+         end if
+         if (clearance >= share*abs(dq(i))) cycle
+         share = max(clearance, 0.0_wp)/abs(dq(i))
+         first = i
+         direction = merge(1, -1, dq(i) > 0.0_wp)
+         if (.not. share > 0.0_wp) return
+      end do
+   end subroutine first_end
+
+   !> The end of the step becomes the state.
+   subroutine commit(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+
+      if (.not. self%weighed) then
+         call self%find_works(state)
+         call state%springs%carry_to(self%step%q1)
+      end if
+      state%of_loads = state%of_loads + self%of_loads
+      state%of_damping = state%of_damping + self%of_damping
+      call swap(state%q, self%step%q1)
+      call swap(state%v, self%step%w1)
+      state%time = state%time + self%h
+      state%load = self%load
+      call self%step%go_on(state)
+   end subroutine commit
 
    !> The trial at the start of the step.
    subroutine try_start(self, state)

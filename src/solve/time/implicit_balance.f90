@@ -77,6 +77,9 @@ module rbs_solve_time_implicit_balance
    !> A rotation without mass that hinges leave free is held by this share of the initial stiffness.
    real(wp), parameter :: held_by = 1.0e-3_wp
 
+   !> Steps that differ by a smaller share have one factor.
+   real(wp), parameter :: equal_step = 1.0e-14_wp
+
    type :: step_tangent
       !> Diagonal of the tangent (unknowns)
       real(wp), allocatable :: stiffness(:)
@@ -507,13 +510,13 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
 
-      if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= 1.0e-14_wp*h .and. &
+      if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= equal_step*h .and. &
           .not. abs(step%resistance - self%factor_resistance) > 0.0_wp .and. &
           (size(step%damping_tangent) == 0 .or. step%damping_version == self%factor_damping) .and. &
           .not. (state%motion%second_order .and. state%motion%varies)) return
       call step%fit_elements(state)
       associate (structure => state%motion%structure)
-         if (allocated(structure%modal_momenta) .and. abs(h - self%factor_step) > 1.0e-14_wp*h) then
+         if (allocated(structure%modal_momenta) .and. abs(h - self%factor_step) > equal_step*h) then
             call damp_modes(structure%modal_momenta)
          end if
          call set_tangent(state%springs%k, step%now%tangent)

@@ -14,6 +14,7 @@ module rbs_solve_time_implicit_finite
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_general_band
    use rbs_base_stream, only: stream_type
+   use rbs_base_tolerances, only: half_of_digits
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_rates, add_joint_forces, joint_tangent, local
@@ -34,8 +35,6 @@ module rbs_solve_time_implicit_finite
    real(wp), parameter :: no_change = 1.0e-6_wp
    !> Forces that residuals are compared with are no smaller, so that nothing overflows [N, N m].
    real(wp), parameter :: least_scale = 1.0e-150_wp
-   !> A change below this share of a deformation has few digits in it.
-   real(wp), parameter :: no_digits = 1.0e-8_wp
 
    type, extends(newton_stepper) :: finite_stepper
       !> Whether the forces are those of the mean-value derivatives; else the parameters of generalised-alpha
@@ -282,7 +281,7 @@ contains
                self%k(i) = 0.5_wp*springs%k(i)
                ! A change that its deformation has no digits for is the one that the spring has made.
                moved = self%change(i)
-               if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
+               if (abs(moved) < half_of_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
                ! Springs with a mark are at the end of the step; their work is counted from its start.
                if (self%marked .and. abs(moved) > 0.0_wp) then
                   mean = springs%work(i)/moved

@@ -8,8 +8,7 @@ module rbs_solve_time_located
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_solve_time_event, only: event_type, find_event, same_event, event_distance, round_off_of, &
-      above_round_off, &
-                                   direction_of
+      above_round_off, direction_of
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds

@@ -62,7 +62,6 @@ module rbs_solve_time_newton
    abstract interface
       subroutine act_on_state(self, state)
          import :: newton_stepper, state_type
-         implicit none
          class(newton_stepper), intent(inout) :: self
          type(state_type), intent(inout) :: state
       end subroutine act_on_state
@@ -70,7 +69,6 @@ module rbs_solve_time_newton
       !> Go on (or back) by a share of the correction, and find the residual there.
       subroutine try_interface(self, state, share)
          import :: newton_stepper, state_type, wp
-         implicit none
          class(newton_stepper), intent(inout) :: self
          type(state_type), intent(inout) :: state
          real(wp), intent(in) :: share
@@ -79,14 +77,12 @@ module rbs_solve_time_newton
       !> Work of the residual on the correction.
       real(wp) function work_interface(self)
          import :: newton_stepper, wp
-         implicit none
          class(newton_stepper), intent(in) :: self
       end function work_interface
 
       !> Whether the residual is the round-off of the terms of the step.
       logical function round_off_interface(self, state)
          import :: newton_stepper, state_type
-         implicit none
          class(newton_stepper), intent(in) :: self
          type(state_type), intent(in) :: state
       end function round_off_interface
@@ -94,7 +90,6 @@ module rbs_solve_time_newton
       !> Save or restore the motion of the bodies at the start of a step.
       subroutine serialize_interface(self, stream)
          import :: newton_stepper, stream_type
-         implicit none
          class(newton_stepper), intent(inout) :: self
          type(stream_type), intent(inout) :: stream
       end subroutine serialize_interface

@@ -5,14 +5,12 @@ module rbs_solve_time_plan
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: same_input
    use rbs_base_check, only: is_given
    implicit none
    private
 
    public :: time_plan, same_step, new_plan, check_times, check_length
-
-   !> Steps this close to a whole number in an interval divide it.
-   real(wp), parameter :: whole = 1.0e-9_wp
 
    !> Share of a step by which those of equal length may differ.
    real(wp), parameter :: same_step = 1.0e-10_wp
@@ -107,14 +105,14 @@ contains
          if (allocated(error)) return
          step = dt
          parts = (time(2:) - time(:m - 1))/step
-         plan%free = any(abs(parts - max(anint(parts), 1.0_wp)) > whole*parts)
+         plan%free = any(abs(parts - max(anint(parts), 1.0_wp)) > same_input*parts)
          parts = max(anint(parts), 1.0_wp)
       else
          step = longest
-         parts = max(aint((time(2:) - time(:m - 1))/step*(1.0_wp - whole)) + 1.0_wp, 1.0_wp)
+         parts = max(aint((time(2:) - time(:m - 1))/step*(1.0_wp - same_input)) + 1.0_wp, 1.0_wp)
       end if
       steps = sum(parts)
-      if (plan%free) steps = aint((plan%finish - plan%begin)/step*(1.0_wp - whole)) + 1.0_wp
+      if (plan%free) steps = aint((plan%finish - plan%begin)/step*(1.0_wp - same_input)) + 1.0_wp
       call check_length(steps, step, error)
       if (allocated(error)) return
       plan%steps = nint(steps)

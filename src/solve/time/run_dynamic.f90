@@ -11,8 +11,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial, signals, &
-                                signal_names
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial, signals, signal_names
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_pair45, only: pair45_scheme

@@ -32,7 +32,6 @@ module rbs_solve_time_scheme
       !> Allocate the work arrays for the steps of a structure.
       subroutine create_interface(self, structure)
          import :: scheme_type, structure_type
-         implicit none
          class(scheme_type), intent(out) :: self
          class(structure_type), intent(in) :: structure
       end subroutine create_interface
@@ -40,7 +39,6 @@ module rbs_solve_time_scheme
       !> A step of h on the present lines of the springs; deformations and velocities of the state stay.
       subroutine attempt_interface(self, state, h)
          import :: scheme_type, state_type, wp
-         implicit none
          class(scheme_type), intent(inout) :: self
          type(state_type), intent(inout) :: state
          !> Step [s]

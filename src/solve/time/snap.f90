@@ -9,7 +9,7 @@ submodule (rbs_solve_time_implicit) rbs_solve_time_snap
    !> one has failed, the residuals that they leave, that of a state at rest, and the least and the largest
    !> resistance as shares of the initial stiffness.
    integer, parameter :: most_rounds = 100, few_trials = 8, patience = 4
-   real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-9_wp, least_resistance = 1.0e-6_wp, &
+   real(wp), parameter :: loose = 1.0e-6_wp, resting = 1.0e-9_wp, least_resistance = 1.0e-6_wp, &
                           most_resistance = 1.0e4_wp
 
    !> Shares of the energy that a step may lose without a jump, and that no jump loses; share of the potential
@@ -67,7 +67,7 @@ contains
             call self%iterate(state)
             if (self%converged) exit
             call go_back(self, state)
-            if (tried <= at_rest) call rest(self, state, at_last)
+            if (tried <= resting) call rest(self, state, at_last)
             if (self%converged) exit
          end if
          call self%resist(resistance)
@@ -110,7 +110,7 @@ contains
       self%step%now%resistance = 0.0_wp
       call self%tangent%fit(self%step, state, self%h)
       call self%step%find_residual(state, self%h, self%load, self%residual)
-      self%converged = self%residual <= at_rest
+      self%converged = self%residual <= resting
    end subroutine rest
 
    !> Return to where the last round of `snap` began.

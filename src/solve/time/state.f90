@@ -63,7 +63,6 @@ module rbs_solve_time_state
       !> Move a state on by h. On failure the state is the last good one.
       subroutine advance_interface(self, state, h, error)
          import :: stepper_type, state_type, error_type, wp
-         implicit none
          class(stepper_type), intent(inout) :: self
          type(state_type), intent(inout) :: state
          !> Step [s]

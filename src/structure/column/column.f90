@@ -15,7 +15,7 @@ module rbs_structure_column_column
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_tolerances, only: round_off
+   use rbs_base_tolerances, only: round_off, same_input
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_column_chain, only: deformations, displacements, joint_forces, second_order_forces, &
@@ -46,9 +46,6 @@ module rbs_structure_column_column
       channel_type('axial_force', 'N'), channel_type('base_shear', 'N'), channel_type('base_moment', 'N m'), &
       channel_type('velocity', 'm/s'), channel_type('acceleration', 'm/s2'), &
       channel_type('ground_acceleration', 'm/s2'), channel_type('opening', 'm'), channel_type('rest', 'rad')]
-
-   !> Rotations of bodies that are differences of numbers this much larger are zero.
-   real(wp), parameter :: no_rotation = 1.0e-9_wp
 
    type, extends(structure_type) :: column_type
       ! The unknowns, as many as springs, are 2 n or, with axial springs, 3 n
@@ -95,7 +92,7 @@ module rbs_structure_column_column
       procedure :: spring_rates, unknown_rates, forces, axial_forces, axial_force, add_stiffness
       procedure :: add_geometric, accelerations, power_of_loads, potential_energy, top_height, rotations
       procedure :: angular_momentum, acceleration_scale, check_loads, check_initial, check_inertia
-      procedure :: dynamic_parts, set_shape, is_in_series, clear_round_off, momenta, channels, fill_row
+      procedure :: dynamic_parts, set_shape, clear_round_off, momenta, channels, fill_row
       procedure :: put_under, largest_rotation
    end type column_type
 
@@ -123,6 +120,7 @@ contains
       if (self%held) self%unit_axial(2*self%n) = 0.0_wp
       self%compression = load + above(:self%n)
       self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
+      self%in_series = .not. (self%axially_loaded .or. self%held)
       ! Layered joints and axial springs carry the axial load of load and weight above them.
       do i = self%n + 1, self%unknowns
          self%constant_axial(i) = self%compression(self%location(i)%index)
@@ -430,7 +428,7 @@ contains
       if (.not. self%held .or. allocated(error)) return
       associate (relative => value(self%n + 1:2*self%n))
          total = sum(relative)
-         if (abs(total) <= no_rotation*maxval(abs(relative))) return
+         if (abs(total) <= same_input*maxval(abs(relative))) return
       end associate
       call fatal_error(error, bad_input, name//": with top = 'fixed' the relative rotations must add up "// &
                        'to zero, not to '//to_text(total)//'; change that of the last joint')
@@ -489,12 +487,6 @@ contains
       end if
       shape = sign(1.0_wp, along)*shape
    end subroutine set_shape
-
-   pure logical function is_in_series(self)
-      class(column_type), intent(in) :: self
-
-      is_in_series = .not. (self%axially_loaded .or. self%held)
-   end function is_in_series
 
    !> Where a spring without stiffness moves alone, the force rates of all others are round-off.
    pure subroutine clear_round_off(self, tangent, dx, k, dd)

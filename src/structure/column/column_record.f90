@@ -8,6 +8,7 @@ module rbs_structure_column_column_record
    use rbs_base_keys, only: bound_type, any_number, above_zero, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
+   use rbs_base_tolerances, only: same_input
    use rbs_hysteresis_registry, only: rule_names, suits
    use rbs_hysteresis_rule, only: in_shear, in_flexure, in_axial
    use rbs_hysteresis_spring_record, only: spring_record
@@ -261,7 +262,7 @@ contains
          if (.not. ieee_is_finite(self%height) .or. .not. all(ieee_is_finite(self%lengths))) return
          if (.not. self%height > 0.0_wp) return
          total = sum(self%lengths)
-         if (abs(total - self%height) > 1.0e-9_wp*self%height) then
+         if (abs(total - self%height) > same_input*self%height) then
             call messages%add('column: the lengths add up to '//to_text(total)//' m, the height is '// &
                               to_text(self%height)//' m; make them equal')
          end if

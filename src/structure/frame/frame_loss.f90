@@ -1,6 +1,7 @@
 !> Members of a frame that fail in shear, lose their axial load or are removed, and collapse after that.
 submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
    use rbs_base_check, only: is_given
+   use rbs_base_tolerances, only: same_input
    use rbs_structure_frame_element_balance, only: energy_of_rest, chord_rotation
    use rbs_structure_spring_location, only: shear, flexure
    implicit none
@@ -10,9 +11,6 @@ submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
 
    !> A rotation that no hinge of a frame has [rad].
    real(wp), parameter :: farthest = 10.0_wp
-
-   !> Times that differ by less than this share are the same.
-   real(wp), parameter :: same_time = 1.0e-9_wp
 
 contains
 
@@ -32,7 +30,7 @@ contains
       do i = 1, self%members
          if (self%is_removed(i, springs)) cycle
          if (present(time) .and. is_given(self%lost_at(i))) then
-            if (time - self%lost_at(i) >= -same_time*abs(self%lost_at(i))) member = i
+            if (time - self%lost_at(i) >= -same_input*abs(self%lost_at(i))) member = i
          end if
          if (is_given(self%failure_drift(i))) then
             if (has_failed(self, i, springs)) member = i

@@ -169,10 +169,9 @@ contains
       type(cell_record) :: beam, infilled
 
       if (.not. allocated(self%floor)) then
-         allocate (self%plane(0), self%floor(0), self%node_load(0), self%kind(0), &
-                   self%column_of(0), self%beam_of(0), &
-                   self%infill(0), self%infill_of(0), self%node(0), self%member(0), self%loss(0), &
-                   self%spring(0))
+         allocate (self%plane(0), self%floor(0), self%node_load(0), self%kind(0), self%column_of(0), &
+                   self%beam_of(0), self%infill(0), self%infill_of(0), self%node(0), self%member(0), &
+                   self%loss(0), self%spring(0))
       end if
       select case (group)
       case ('plane')
@@ -290,8 +289,7 @@ contains
       call v%word('pattern', self%pattern, 'shares of the lateral load: as mass, mass times height, '// &
                   'first mode, or push_x and push_y of the nodes', 'uniform triangular modal nodes')
       call v%key('direction', self%direction, '', any_number, 'of a building: direction of the lateral '// &
-               'load in '// &
-                 'plan, in degrees from x towards y')
+                 'load in plan, in degrees from x towards y')
       call v%word('control_node', self%control_node, 'node whose displacement is that of the top; '// &
                   'without it the first of the highest')
       call v%word('control', self%control, 'direction of that displacement', 'x y')
@@ -332,8 +330,7 @@ contains
       call v%key('mass', self%mass, 'kg', not_negative, 'mass of the floor, shared by its nodes as the '// &
                  'widths beside them; its weight acts as far as it is given as a load')
       call v%key('inertia', self%inertia, 'kg m2', not_negative, 'of a building: rotary inertia about '// &
-               'the '// &
-                 'centre of mass, besides the mass, which is at it')
+                 'the centre of mass, besides the mass, which is at it')
       call v%key('centre_x', self%centre_x, 'm', any_number, 'of a building: place of the centre of mass '// &
                'in plan')
       call v%key('centre_y', self%centre_y, 'm', any_number, 'the same along y')
@@ -421,9 +418,8 @@ contains
                      'group that fits counts', required=.true.)
          return
       end if
-      call v%word('kind', self%kind, 'name of the kind of member or of its drawing, ''none'' where '// &
-                  'there is none; the last group that fits counts', &
-                  required=.true.)
+      call v%word('kind', self%kind, 'name of the kind of member or of its drawing, ''none'' where there '// &
+                  'is none; the last group that fits counts', required=.true.)
       call v%word('kind_to', self%kind_to, 'drawing of its second half, if it is another one')
       call v%key('rigid_end', self%rigid_end, 'm', not_negative, &
                  'rigid length in each node that it ends in, not at the base')
@@ -456,8 +452,7 @@ contains
       call v%word('plane', self%plane, 'of a building: plane that it is in; with its floor it moves as '// &
                'that does')
       call v%word('rises_with', self%rises_with, 'of a building: node of another plane whose '// &
-               'displacement upward '// &
-                  'it shares')
+                  'displacement upward it shares')
    end subroutine visit_node
 
    subroutine visit_member(self, v)
@@ -472,8 +467,7 @@ contains
       call v%key('rigid_to', self%rigid_to, 'm', not_negative, 'rigid length at its end')
       call v%key('load', self%load, 'N/m', any_number, 'dead load downward, per length along x')
       call v%word('axial_of', self%axial_of, 'of a building: column of another plane that is the same '// &
-               'column, '// &
-                  'and whose axial force is its own')
+                  'column, and whose axial force is its own')
    end subroutine visit_member
 
    subroutine visit_loss(self, v)
