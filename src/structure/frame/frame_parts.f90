@@ -5,18 +5,19 @@ module rbs_structure_frame_frame_parts
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: same_input
+   use rbs_structure_frame_connections, only: find_leaders, check_floors, end_nodes, hold_idle, &
+                                              hold_between_pins, check_geometry
    use rbs_structure_frame_frame_checks, only: check_values, check_reference, is_rigid, is_strut, group_of
    use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost, stiffness_of
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record, kind_record
-   use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
-   use rbs_structure_frame_plan, only: floor_plan, cosine_sine
+   use rbs_structure_frame_new_frame, only: frame_node, frame_member
+   use rbs_structure_frame_plan, only: floor_plan
+   use rbs_structure_frame_plan_parts, only: put_planes, put_second_planes
    implicit none
    private
 
    public :: frame_parts
-
-   !> Nodes nearer than this share of the size of the frame are at one place.
-   real(wp), parameter :: one_place = 1.0e-9_wp
 
    !> Largest difference of the length of a member from the length that its kind was made for, as a share.
    real(wp), parameter :: one_length = 0.01_wp
@@ -51,7 +52,7 @@ contains
       if (messages%count > known) return
       call lay_grid(self, record, messages)
       call put_nodes(self, record, messages)
-      call put_planes(self, record, messages)
+      call put_planes(self%node, self%plan, self%grid_nodes > 0, record, messages)
       call put_members(self, record, messages)
       if (size(self%node) == 0) then
          call messages%add('frame: it has no storeys and no nodes; give storeys (and bays), or groups '// &
@@ -61,10 +62,10 @@ contains
       call put_node_springs(self, record, messages)
       call put_losses(self, record, messages)
       call put_kinds(self, record, messages)
-      call put_second_planes(self, record, messages)
-      call hold_idle(self)
-      call hold_between_pins(self)
-      call check_geometry(self, messages)
+      call put_second_planes(self%node, self%member, record, messages)
+      call hold_idle(self%node, self%member, self%grid_nodes)
+      call hold_between_pins(self%node, self%member)
+      call check_geometry(self%node, self%member, self%grid_nodes, self%grid_members, messages)
       if (messages%count > known) return
       call choose_top(self, record, messages)
       call push(self, record, messages)
@@ -299,10 +300,9 @@ contains
             else if (number == 0) then
                if (.not. (is_given(given%x) .and. is_given(given%y))) then
                   if (self%grid_nodes > 0) then
-                     call messages%add("node '"//trim(given%name)//"' is none of the grid, "// &
-                                       'whose nodes are '// &
-                                       'called N-line-floor, and has no place; give x and y, or one of '// &
-                                       'those names')
+                     call messages%add("node '"//trim(given%name)//"' is none of the grid, "//'whose '// &
+                                       'nodes are called N-line-floor, and has no place; give x and y, '// &
+                                       'or one of those names')
                   else
                      call messages%add("node '"//trim(given%name)//"' has no place; give x and y")
                   end if
@@ -352,225 +352,6 @@ contains
       call find_leaders(self%node, messages)
       call check_floors(self%node, messages)
    end subroutine put_nodes
-
-   !> Planes of a building, and what its nodes and floors share.
-   subroutine put_planes(self, record, messages)
-      type(frame_parts), intent(inout) :: self
-      type(frame_record), intent(in) :: record
-      type(message_list), intent(inout) :: messages
-      integer :: i, j, known, number, of_plane, with, free
-      real(wp) :: along(2)
-      real(wp), allocatable :: centre(:, :)
-      logical, allocatable :: is_there(:, :)
-
-      known = messages%count
-      if (size(record%plane) == 0) then
-         do i = 1, size(record%node)
-            if (record%node(i)%plane == '' .and. record%node(i)%rises_with == '') cycle
-            call messages%add("node '"//trim(record%node(i)%name)//"': plane and rises_with belong to a "// &
-                              'building, and no group &plane is given; give one for each frame of it')
-            return
-         end do
-         if (any(record%floor%inertia > 0.0_wp) .or. abs(record%direction) > 0.0_wp) then
-            call messages%add('frame: inertia of floors and direction belong to a building, and no group '// &
-                              '&plane is given; remove them, or give a plane for each frame')
-         end if
-         return
-      end if
-      if (self%grid_nodes > 0 .or. record%diaphragm) then
-         call messages%add('frame: storeys, bays and diaphragm are of a planar frame; the nodes of a '// &
-                           'building have x, y, floor and plane of their own')
-      end if
-      if (record%control == 'y') call messages%add("frame: control = 'y' is of a planar frame; remove it")
-      do i = 1, size(record%node)
-         associate (given => record%node(i), name => "node '"//trim(record%node(i)%name)//"'")
-            number = findloc(self%node%name == given%name, .true., dim=1)
-            if (number == 0) cycle
-            call check_reference(given%plane, [record%plane%name], name//': plane', 'plane', messages)
-            of_plane = findloc(record%plane%name == given%plane, .true., dim=1)
-            self%node(number)%plane = of_plane
-            if (given%moves_with /= '') then
-               call messages%add(name//': moves_with is of a planar frame; in a building nodes of a '// &
-                        'floor '// &
-                                 'move with it')
-            end if
-            if (given%rises_with == '') cycle
-            call check_reference(given%rises_with, [self%node%name], name//': rises_with', 'node', messages)
-            with = findloc(self%node%name == given%rises_with, .true., dim=1)
-            if (with == 0) cycle
-            if (with == number .or. record%node(findloc(record%node%name == given%rises_with, .true., &
-                                                        dim=1))%rises_with /= '') then
-               call messages%add(name//": rises_with = '"//trim(given%rises_with)//"' rises with another "// &
-                                 'node itself; name that one')
-               cycle
-            end if
-            self%node(number)%rises_like = with
-         end associate
-      end do
-      if (messages%count > known) return
-      do i = 1, size(self%node)
-         associate (node => self%node(i), with => self%node(i)%rises_like)
-            if (with > 0) then
-               if (node%held(2) .neqv. self%node(with)%held(2)) then
-                  call messages%add("node '"//trim(node%name)//"' rises with node '"// &
-                                    trim(self%node(with)%name)//"', and a support holds one of them "// &
-                                    'alone; '// &
-                                    'give both the same')
-               end if
-            end if
-            if (node%held(1) .and. node%follows_floor()) then
-               call messages%add("node '"//trim(node%name)//"' is held along x, and would hold its "// &
-                                 'floor; '// &
-                                 'remove the support, or its floor')
-            end if
-         end associate
-      end do
-      associate (floors => max(0, maxval(self%node%storey)))
-         if (floors == 0) then
-            call messages%add('frame: a building has floors, and no node names one; give nodes their floors')
-            return
-         end if
-         allocate (self%plan%share(3, size(record%plane), floors))
-         allocate (centre(2, floors), source=0.0_wp)
-         allocate (self%plan%mass(floors), self%plan%inertia(floors), source=0.0_wp)
-         do i = 1, size(record%plane)
-            if (any(self%node%plane == i .and. self%node%storey > 0)) cycle
-            call messages%add("plane '"//trim(record%plane(i)%name)//"' has no node on a floor; remove it")
-         end do
-         do i = 1, size(record%floor)
-            associate (floor => record%floor(i))
-               if (floor%floor > floors) then
-                  call messages%add('floor: floor = '//to_text(floor%floor)//', but the building has '// &
-                                    to_text(floors)//' floors; correct it, or give 0 for all')
-               else if (floor%floor > 0) then
-                  self%plan%mass(floor%floor) = floor%mass
-                  self%plan%inertia(floor%floor) = floor%inertia
-                  centre(:, floor%floor) = [floor%centre_x, floor%centre_y]
-               else
-                  self%plan%mass = floor%mass
-                  self%plan%inertia = floor%inertia
-                  centre = spread([floor%centre_x, floor%centre_y], 2, floors)
-               end if
-               if (abs(floor%dead_load) > 0.0_wp) then
-                  call messages%add('floor: dead_load acts on the beams of a grid, and a building has '// &
-                           'none; '// &
-                                    'give it to its members as load')
-               end if
-            end associate
-         end do
-         do i = 1, size(record%plane)
-            along = cosine_sine(record%plane(i)%angle)
-            do j = 1, floors
-               self%plan%share(:, i, j) = [along, record%plane(i)%arm - &
-                                           (centre(1, j)*along(2) - centre(2, j)*along(1))]
-            end do
-         end do
-         is_there = reshape([((any(self%node%plane == i .and. self%node%storey == j), &
-                               i=1, size(record%plane)), j=1, floors)], [size(record%plane), floors])
-      end associate
-      self%plan%direction(:2) = cosine_sine(record%direction)
-      self%plan%by_nodes = record%pattern == 'nodes'
-      call self%plan%hold_free(is_there, free)
-      if (free > 0) then
-         call messages%add('floor '//to_text(free)//': the planes leave it free to turn, or to move; '// &
-                  'give '// &
-                           'planes in another direction, or at other distances from the centre of mass')
-      else if (any(self%plan%held .and. abs(self%plan%direction) > 0.0_wp)) then
-         call messages%add('frame: direction = '//to_text(record%direction)//' has a part along '// &
-                           merge('x', 'y', self%plan%held(1) .and. abs(self%plan%direction(1)) > 0.0_wp)// &
-                           ', in which no plane of the building resists it; choose another one')
-      end if
-   end subroutine put_planes
-
-   !> Columns in two planes.
-   subroutine put_second_planes(self, record, messages)
-      type(frame_parts), intent(inout) :: self
-      type(frame_record), intent(in) :: record
-      type(message_list), intent(inout) :: messages
-      integer :: i, number, with
-      logical :: is_lost
-
-      do i = 1, size(record%member)
-         associate (given => record%member(i), name => 'member '//trim(record%member(i)%name))
-            if (given%axial_of == '') cycle
-            call check_reference(given%axial_of, [self%member%name], name//': axial_of', 'member', messages)
-            number = findloc(self%member%name == given%name, .true., dim=1)
-            with = findloc(self%member%name == given%axial_of, .true., dim=1)
-            if (with == 0) cycle
-            if (with == number .or. record%member(with)%axial_of /= '' .or. &
-                any(self%member(:number - 1)%axial_of == with)) then
-               call messages%add(name//": axial_of = '"//trim(given%axial_of)//"' is no column of one "// &
-                                 'other '// &
-                                 'plane; a column has two planes, of which the first has none')
-               cycle
-            end if
-            associate (a => self%member(number)%node, b => self%member(with)%node)
-               if (any(self%node(a)%plane == self%node(b)%plane) .or. &
-                   any(self%node(a)%rises_like /= b .and. .not. (self%node(a)%held(2) .and. &
-                                                                  self%node(b)%held(2)))) then
-                  call messages%add(name//": axial_of = '"//trim(given%axial_of)//"' is a column between "// &
-                                    'other nodes; their nodes rise together (rises_with)')
-                  cycle
-               end if
-            end associate
-            associate (both => self%member([number, with]))
-               is_lost = any(is_given([both%lost_at, both%failure_drift]))
-            end associate
-            if (is_lost) then
-               call messages%add('member '//trim(given%name)//' is a column in two planes, and these '// &
-                        'cannot be '// &
-                                 'lost; leave out its group &loss, and failure_drift of its kind')
-               cycle
-            end if
-            self%member(number)%axial_of = with
-         end associate
-      end do
-   end subroutine put_second_planes
-
-   !> Refuse floors without nodes, and those that are not above the floor before.
-   subroutine check_floors(node, messages)
-      type(frame_node), intent(in) :: node(:)
-      type(message_list), intent(inout) :: messages
-      integer :: i
-
-      if (all(node%storey < 1)) return
-      do i = 0, maxval(node%storey)
-         if (all(node%storey /= i)) then
-            call messages%add('floor '//to_text(i)//' has no node; give nodes their floors from 0, the '// &
-                              'base, up')
-         else if (i > 0) then
-            if (maxval(node%y, mask=node%storey == i) <= maxval(node%y, mask=node%storey == i - 1)) then
-               call messages%add('floor '//to_text(i)//' is not above floor '//to_text(i - 1)// &
-                                 '; give nodes their floors from the base up')
-            end if
-         end if
-      end do
-   end subroutine check_floors
-
-   !> The one node of each group whose displacement along x the others share; a support of any of them holds
-   !> all.
-   subroutine find_leaders(node, messages)
-      type(frame_node), intent(inout) :: node(:)
-      type(message_list), intent(inout) :: messages
-      integer :: i, steps, leader(size(node))
-
-      do i = 1, size(node)
-         leader(i) = i
-         do steps = 1, size(node)
-            if (node(leader(i))%like == 0) exit
-            leader(i) = node(leader(i))%like
-         end do
-         if (node(leader(i))%like == 0) cycle
-         call messages%add("node '"//trim(node(i)%name)//"' moves with itself, by way of node '"// &
-                           trim(node(node(i)%like)%name)//"'; remove one moves_with")
-         return
-      end do
-      do i = 1, size(node)
-         if (leader(i) /= i) node(i)%like = leader(i)
-         node(leader(i))%held(1) = node(leader(i))%held(1) .or. node(i)%held(1)
-      end do
-      node%held(1) = node(leader)%held(1)
-   end subroutine find_leaders
 
    subroutine put_members(self, record, messages)
       type(frame_parts), intent(inout) :: self
@@ -638,8 +419,7 @@ contains
                                        "' does nothing, as its support holds it; change support (or base)")
                   else if (k == 1 .and. node%follows_floor()) then
                      call messages%add("the spring of node '"//trim(node%name)//"' holds a floor, which "// &
-                                       'moves '// &
-                                       'in plan; give it to a node of the base')
+                                       'moves in plan; give it to a node of the base')
                   else if (k == 2 .and. node%rises_like > 0) then
                      call messages%add("the spring of node '"//trim(node%name)//"' stands where another "// &
                                        "node rises alike; give it to node '"// &
@@ -675,8 +455,8 @@ contains
       integer :: i
 
       any_node = .false.
-      has_beam = end_nodes(self, .true., turns=.true.)
-      has_column = end_nodes(self, .false., turns=.true.)
+      has_beam = end_nodes(self%node, self%member, beams=.true., turns=.true.)
+      has_column = end_nodes(self%node, self%member, beams=.false., turns=.true.)
       do i = 1, size(self%node)
          associate (node => self%node(i))
             if (given%panel == 'all') then
@@ -703,25 +483,6 @@ contains
          call check_reference(given%panel, [self%node%name], '&flexure: panel', 'node', messages)
       end if
    end subroutine put_panel
-
-   !> Nodes that beams end in, or columns; only those that turn with the node, or that carry the dead load.
-   pure function end_nodes(self, beams, turns, before_load) result(ends)
-      type(frame_parts), intent(in) :: self
-      logical, intent(in) :: beams
-      logical, intent(in), optional :: turns, before_load
-      logical :: ends(size(self%node))
-      integer :: i
-
-      ends = .false.
-      do i = 1, size(self%member)
-         associate (of => self%member(i)%node)
-            if (any(of == 0)) cycle
-            if (present(turns) .and. self%member(i)%pinned) cycle
-            if (present(before_load) .and. self%member(i)%after_dead_load) cycle
-            if (is_beam(self%node(of(1)), self%node(of(2))) .eqv. beams) ends(of) = .true.
-         end associate
-      end do
-   end function end_nodes
 
    !> Members that are lost at a time.
    subroutine put_losses(self, record, messages)
@@ -786,7 +547,7 @@ contains
                                     ' m; shorten rigid_end')
                   cycle
                end if
-               if (abs(m%load) > 0.0_wp .and. abs(b%x - a%x) <= one_place*whole) then
+               if (abs(m%load) > 0.0_wp .and. abs(b%x - a%x) <= same_input*whole) then
                   call messages%add('member '//trim(m%name)//' stands upright, and a load per length '// &
                                     'along x does nothing on it; give load_y to its nodes')
                end if
@@ -835,139 +596,6 @@ contains
                         "springs of member_kind '"//trim(kind%name)//"' were made for "// &
                         to_text(kind%length)//' m; make a kind for this length, or correct rigid_end')
    end subroutine check_length
-
-   !> Nodes at one place, without a member, or all held; members between the same nodes.
-   subroutine check_geometry(self, messages)
-      type(frame_parts), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      real(wp) :: near
-      logical :: has_member(size(self%node)), is_carried(size(self%node))
-      integer :: i, j
-
-      has_member = end_nodes(self, .true.) .or. end_nodes(self, .false.)
-      is_carried = end_nodes(self, .true., before_load=.true.) .or. &
-                   end_nodes(self, .false., before_load=.true.)
-      near = one_place*(maxval(self%node%x) - minval(self%node%x) + maxval(self%node%y) - minval(self%node%y))
-      do i = 1, size(self%node)
-         associate (node => self%node(i))
-            ! Nodes of the grid are apart.
-            do j = 1, merge(i - 1, 0, i > self%grid_nodes)
-               if (node%plane /= self%node(j)%plane) cycle
-               if (hypot(node%x - self%node(j)%x, node%y - self%node(j)%y) > near) cycle
-               ! A hinge between two parts, or the feet of parts that stand behind each other
-               if (leader_of(self, i) == leader_of(self, j)) cycle
-               if (all(node%held(:2)) .and. all(self%node(j)%held(:2))) cycle
-               call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
-                                 ' are at one place; move one of them, use one in place of both, or '// &
-                                 'tie them by moves_with')
-            end do
-            if (.not. has_member(i) .and. (node%storey /= 0 .or. i > self%grid_nodes)) then
-               call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
-            else if (has_member(i) .and. .not. is_carried(i) .and. &
-                     .not. all(node%held .or. node%ground%rule /= '')) then
-               call messages%add("node '"//trim(node%name)//"' is joined by nothing but members that are "// &
-                                 'built after the dead load; give it a support, or join it to the others')
-            end if
-            if (node%held(3) .and. abs(node%load(3)) > 0.0_wp .and. .not. all(node%held)) then
-               call messages%add("node '"//trim(node%name)//"' does not turn, and its load_moment does "// &
-                                 'nothing; remove it, or join a member that is not pinned')
-            else if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
-               call messages%add("node '"//trim(node%name)//"' is held, "// &
-                                 'and its load does nothing; remove '// &
-                                 'the load, or free the node')
-            end if
-         end associate
-      end do
-      do i = self%grid_members + 1, size(self%member)
-         do j = 1, i - 1
-            ! A jacket is beside its column, and is built later.
-            if (self%member(i)%after_dead_load .neqv. self%member(j)%after_dead_load) cycle
-            if (any(self%member(i)%node /= self%member(j)%node) .and. &
-                any(self%member(i)%node([2, 1]) /= self%member(j)%node)) cycle
-            call messages%add('members '//trim(self%member(j)%name)//' and '//trim(self%member(i)%name)// &
-                              ' join the same two nodes; remove one')
-         end do
-      end do
-      if (all([(all(self%node(i)%held), i=1, size(self%node))])) then
-         call messages%add('frame: every node is held, and nothing can move; free one of them')
-      else if (.not. any([(any(self%node(i)%held) .or. any(self%node(i)%ground%rule /= ''), &
-                           i=1, size(self%node))])) then
-         call messages%add('frame: nothing holds it; give nodes a support, or springs to the ground')
-      end if
-      call check_tied(self, has_member, messages)
-   end subroutine check_geometry
-
-   !> Refuse parts that neither a member nor a common motion ties: one would carry all of the lateral load,
-   !> the other none.
-   subroutine check_tied(self, has_member, messages)
-      type(frame_parts), intent(in) :: self
-      logical, intent(in) :: has_member(:)
-      type(message_list), intent(inout) :: messages
-      integer :: part(size(self%node)), i, first, other
-      logical :: moved
-
-      part = [(leader_of(self, i), i=1, size(part))]
-      moved = .true.
-      do while (moved)
-         moved = .false.
-         do i = 1, size(self%member)
-            associate (ends => self%member(i)%node)
-               if (part(ends(1)) == part(ends(2))) cycle
-               first = minval(part(ends))
-               other = maxval(part(ends))
-               where (part == other) part = first
-               moved = .true.
-            end associate
-         end do
-      end do
-      first = findloc(has_member, .true., dim=1)
-      if (first == 0) return
-      other = findloc(has_member .and. part /= part(first), .true., dim=1)
-      if (other == 0) return
-      call messages%add('frame: nodes '//trim(self%node(first)%name)//' and '//trim(self%node(other)%name)// &
-                        ' are of parts that nothing ties, so that one would carry all of the load; join '// &
-                        'them by a member, or let a node of one move with one of the other (moves_with)')
-   end subroutine check_tied
-
-   !> The node whose displacement along x a node shares: itself, if none was given.
-   pure integer function leader_of(self, node) result(leader)
-      type(frame_parts), intent(in) :: self
-      integer, intent(in) :: node
-
-      leader = self%node(node)%like
-      if (self%node(node)%follows_floor()) then
-         leader = findloc(self%node%follows_floor() .and. self%node%storey == self%node(node)%storey, &
-                          .true., dim=1)
-      end if
-      if (leader == 0) leader = node
-   end function leader_of
-
-   !> Feet of columns that are left out do not move.
-   subroutine hold_idle(self)
-      type(frame_parts), intent(inout) :: self
-      logical :: has_member(size(self%node))
-      integer :: i
-
-      has_member = end_nodes(self, .true.) .or. end_nodes(self, .false.)
-      do i = 1, size(self%node)
-         if (self%node(i)%storey /= 0 .or. i > self%grid_nodes .or. has_member(i)) cycle
-         self%node(i)%held = .true.
-         self%node(i)%ground%rule = ''
-      end do
-   end subroutine hold_idle
-
-   !> A node that all members turn freely in does not turn itself.
-   subroutine hold_between_pins(self)
-      type(frame_parts), intent(inout) :: self
-      logical :: turned(size(self%node))
-      integer :: i
-
-      turned = end_nodes(self, .true., turns=.true.) .or. end_nodes(self, .false., turns=.true.)
-      do i = 1, size(self%node)
-         if (turned(i) .or. self%node(i)%ground(3)%rule /= '') cycle
-         self%node(i)%held(3) = .true.
-      end do
-   end subroutine hold_between_pins
 
    !> The controlled node, whose displacement is that of the top.
    subroutine choose_top(self, record, messages)

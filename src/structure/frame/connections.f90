@@ -1,0 +1,222 @@
+!> How nodes and members of a frame hang together: nodes that move alike, floors one above the other, parts
+!> that nothing ties.
+module rbs_structure_frame_connections
+   use rbs_base_error, only: message_list
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: same_input
+   use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
+   implicit none
+   private
+
+   public :: find_leaders, check_floors, end_nodes, hold_idle, hold_between_pins, check_geometry
+
+contains
+
+   !> The one node of each group whose displacement along x the others share; a support of any of them holds
+   !> all.
+   subroutine find_leaders(node, messages)
+      type(frame_node), intent(inout) :: node(:)
+      type(message_list), intent(inout) :: messages
+      integer :: i, steps, leader(size(node))
+
+      do i = 1, size(node)
+         leader(i) = i
+         do steps = 1, size(node)
+            if (node(leader(i))%like == 0) exit
+            leader(i) = node(leader(i))%like
+         end do
+         if (node(leader(i))%like == 0) cycle
+         call messages%add("node '"//trim(node(i)%name)//"' moves with itself, by way of node '"// &
+                           trim(node(node(i)%like)%name)//"'; remove one moves_with")
+         return
+      end do
+      do i = 1, size(node)
+         if (leader(i) /= i) node(i)%like = leader(i)
+         node(leader(i))%held(1) = node(leader(i))%held(1) .or. node(i)%held(1)
+      end do
+      node%held(1) = node(leader)%held(1)
+   end subroutine find_leaders
+
+   !> Refuse floors without nodes, and those that are not above the floor before.
+   subroutine check_floors(node, messages)
+      type(frame_node), intent(in) :: node(:)
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      if (all(node%storey < 1)) return
+      do i = 0, maxval(node%storey)
+         if (all(node%storey /= i)) then
+            call messages%add('floor '//to_text(i)//' has no node; give nodes their floors from 0, the '// &
+                              'base, up')
+         else if (i > 0) then
+            if (maxval(node%y, mask=node%storey == i) <= maxval(node%y, mask=node%storey == i - 1)) then
+               call messages%add('floor '//to_text(i)//' is not above floor '//to_text(i - 1)// &
+                                 '; give nodes their floors from the base up')
+            end if
+         end if
+      end do
+   end subroutine check_floors
+
+   !> Nodes that members end in: beams, or columns; those that turn with the node, or that carry the dead
+   !> load.
+   pure function end_nodes(nodes, members, beams, turns, before_load) result(ends)
+      type(frame_node), intent(in) :: nodes(:)
+      type(frame_member), intent(in) :: members(:)
+      logical, intent(in), optional :: beams, turns, before_load
+      logical :: ends(size(nodes))
+      integer :: i
+
+      ends = .false.
+      do i = 1, size(members)
+         associate (of => members(i)%node)
+            if (any(of == 0)) cycle
+            if (present(turns) .and. members(i)%pinned) cycle
+            if (present(before_load) .and. members(i)%after_dead_load) cycle
+            if (present(beams)) then
+               if (is_beam(nodes(of(1)), nodes(of(2))) .neqv. beams) cycle
+            end if
+            ends(of) = .true.
+         end associate
+      end do
+   end function end_nodes
+
+   !> Feet of columns that are left out do not move.
+   subroutine hold_idle(nodes, members, grid_nodes)
+      type(frame_node), intent(inout) :: nodes(:)
+      type(frame_member), intent(in) :: members(:)
+      integer, intent(in) :: grid_nodes
+      logical :: has_member(size(nodes))
+      integer :: i
+
+      has_member = end_nodes(nodes, members)
+      do i = 1, size(nodes)
+         if (nodes(i)%storey /= 0 .or. i > grid_nodes .or. has_member(i)) cycle
+         nodes(i)%held = .true.
+         nodes(i)%ground%rule = ''
+      end do
+   end subroutine hold_idle
+
+   !> A node that all members turn freely in does not turn itself.
+   subroutine hold_between_pins(nodes, members)
+      type(frame_node), intent(inout) :: nodes(:)
+      type(frame_member), intent(in) :: members(:)
+      logical :: turned(size(nodes))
+      integer :: i
+
+      turned = end_nodes(nodes, members, turns=.true.)
+      do i = 1, size(nodes)
+         if (turned(i) .or. nodes(i)%ground(3)%rule /= '') cycle
+         nodes(i)%held(3) = .true.
+      end do
+   end subroutine hold_between_pins
+
+   !> Nodes at one place, without a member, or all held; members between the same nodes.
+   subroutine check_geometry(nodes, members, grid_nodes, grid_members, messages)
+      type(frame_node), intent(in) :: nodes(:)
+      type(frame_member), intent(in) :: members(:)
+      !> How many of them the grid has, which come first
+      integer, intent(in) :: grid_nodes, grid_members
+      type(message_list), intent(inout) :: messages
+      real(wp) :: near
+      logical :: has_member(size(nodes)), is_carried(size(nodes))
+      integer :: i, j
+
+      has_member = end_nodes(nodes, members)
+      is_carried = end_nodes(nodes, members, before_load=.true.)
+      near = same_input*(maxval(nodes%x) - minval(nodes%x) + maxval(nodes%y) - minval(nodes%y))
+      do i = 1, size(nodes)
+         associate (node => nodes(i))
+            ! Nodes of the grid are apart.
+            do j = 1, merge(i - 1, 0, i > grid_nodes)
+               if (node%plane /= nodes(j)%plane) cycle
+               if (hypot(node%x - nodes(j)%x, node%y - nodes(j)%y) > near) cycle
+               ! A hinge between two parts, or the feet of parts that stand behind each other
+               if (leader_of(nodes, i) == leader_of(nodes, j)) cycle
+               if (all(node%held(:2)) .and. all(nodes(j)%held(:2))) cycle
+               call messages%add('nodes '//trim(nodes(j)%name)//' and '//trim(node%name)// &
+                                 ' are at one place; move one of them, use one in place of both, or '// &
+                                 'tie them by moves_with')
+            end do
+            if (.not. has_member(i) .and. (node%storey /= 0 .or. i > grid_nodes)) then
+               call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
+            else if (has_member(i) .and. .not. is_carried(i) .and. &
+                     .not. all(node%held .or. node%ground%rule /= '')) then
+               call messages%add("node '"//trim(node%name)//"' is joined by nothing but members that are "// &
+                                 'built after the dead load; give it a support, or join it to the others')
+            end if
+            if (node%held(3) .and. abs(node%load(3)) > 0.0_wp .and. .not. all(node%held)) then
+               call messages%add("node '"//trim(node%name)//"' does not turn, and its load_moment does "// &
+                                 'nothing; remove it, or join a member that is not pinned')
+            else if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
+               call messages%add("node '"//trim(node%name)//"' is held, "//'and its load does nothing; '// &
+                                 'remove the load, or free the node')
+            end if
+         end associate
+      end do
+      do i = grid_members + 1, size(members)
+         do j = 1, i - 1
+            ! A jacket is beside its column, and is built later.
+            if (members(i)%after_dead_load .neqv. members(j)%after_dead_load) cycle
+            if (any(members(i)%node /= members(j)%node) .and. &
+                any(members(i)%node([2, 1]) /= members(j)%node)) cycle
+            call messages%add('members '//trim(members(j)%name)//' and '//trim(members(i)%name)// &
+                              ' join the same two nodes; remove one')
+         end do
+      end do
+      if (all([(all(nodes(i)%held), i=1, size(nodes))])) then
+         call messages%add('frame: every node is held, and nothing can move; free one of them')
+      else if (.not. any([(any(nodes(i)%held) .or. any(nodes(i)%ground%rule /= ''), &
+                           i=1, size(nodes))])) then
+         call messages%add('frame: nothing holds it; give nodes a support, or springs to the ground')
+      end if
+      call check_tied(nodes, members, has_member, messages)
+   end subroutine check_geometry
+
+   !> Refuse parts that neither a member nor a common motion ties: one would carry all of the lateral load,
+   !> the other none.
+   subroutine check_tied(nodes, members, has_member, messages)
+      type(frame_node), intent(in) :: nodes(:)
+      type(frame_member), intent(in) :: members(:)
+      logical, intent(in) :: has_member(:)
+      type(message_list), intent(inout) :: messages
+      integer :: part(size(nodes)), i, first, other
+      logical :: moved
+
+      part = [(leader_of(nodes, i), i=1, size(part))]
+      moved = .true.
+      do while (moved)
+         moved = .false.
+         do i = 1, size(members)
+            associate (ends => members(i)%node)
+               if (part(ends(1)) == part(ends(2))) cycle
+               first = minval(part(ends))
+               other = maxval(part(ends))
+               where (part == other) part = first
+               moved = .true.
+            end associate
+         end do
+      end do
+      first = findloc(has_member, .true., dim=1)
+      if (first == 0) return
+      other = findloc(has_member .and. part /= part(first), .true., dim=1)
+      if (other == 0) return
+      call messages%add('frame: nodes '//trim(nodes(first)%name)//' and '//trim(nodes(other)%name)// &
+                        ' are of parts that nothing ties, so that one would carry all of the load; join '// &
+                        'them by a member, or let a node of one move with one of the other (moves_with)')
+   end subroutine check_tied
+
+   !> The node whose displacement along x a node shares: itself, if none was given.
+   pure integer function leader_of(nodes, node) result(leader)
+      type(frame_node), intent(in) :: nodes(:)
+      integer, intent(in) :: node
+
+      leader = nodes(node)%like
+      if (nodes(node)%follows_floor()) then
+         leader = findloc(nodes%follows_floor() .and. nodes%storey == nodes(node)%storey, &
+                          .true., dim=1)
+      end if
+      if (leader == 0) leader = node
+   end function leader_of
+
+end module rbs_structure_frame_connections
