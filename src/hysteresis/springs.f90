@@ -21,6 +21,9 @@ module rbs_hysteresis_springs
    !> of the rule. The longest correct move closes all open inner loops in the memory of a rule.
    integer, parameter :: most_lines = 10000
 
+   !> Springs that are looked at together whether they leave their lines.
+   integer, parameter :: block_length = 16
+
    !> `count` springs in their present state. Assignment copies everything.
    type :: spring_array
       !> Number of springs
@@ -411,7 +414,6 @@ contains
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
-      integer :: i
 
       if (self%axial_load_varies) then
          call go_back(self)
@@ -419,18 +421,46 @@ contains
          return
       end if
       call go_back(self, d)
-      do i = 1, self%count
-         if (self%journal%is_kept(i)) then
-            call enter_again(self, i)
-         else if (d(i) <= self%upper(i) .and. d(i) >= self%lower(i)) then
-            cycle
-         end if
-         call self%advance_to(i, d(i))
-      end do
+      call leave_lines(self, d, again=.true.)
       if (self%stuck) return
       call advance_all(self, d)
       call sum_up_joints(self)
    end subroutine retry
+
+   !> Move the springs that leave their lines on the way to new deformations, one after the other. Most stay:
+   !> they are looked at by blocks.
+   subroutine leave_lines(self, d, again)
+      type(spring_array), intent(inout) :: self
+      !> New deformations (count) [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+      !> Whether those that have kept their branches enter these again
+      logical, intent(in) :: again
+      logical :: has_kept(0:self%count/block_length), enters
+      integer :: first, last, i
+
+      has_kept = .false.
+      if (again) then
+         do i = 1, self%journal%changed
+            has_kept((self%journal%spring(i) - 1)/block_length) = .true.
+         end do
+      end if
+      do first = 1, self%count, block_length
+         last = min(first + block_length - 1, self%count)
+         if (.not. has_kept((first - 1)/block_length)) then
+            if (are_within(last - first + 1, d(first:), self%lower(first:), self%upper(first:))) cycle
+         end if
+         do i = first, last
+            enters = .false.
+            if (again) enters = self%journal%is_kept(i)
+            if (enters) then
+               call enter_again(self, i)
+            else if (d(i) <= self%upper(i) .and. d(i) >= self%lower(i)) then
+               cycle
+            end if
+            call self%advance_to(i, d(i))
+         end do
+      end do
+   end subroutine leave_lines
 
    !> Put a spring where it entered its present branch.
    pure subroutine enter_again(self, i)
@@ -589,7 +619,6 @@ contains
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
-      integer :: i
 
       if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
@@ -601,12 +630,8 @@ contains
             return
          end if
       end if
-      if (.not. are_within(self%count, d, self%lower, self%upper)) then
-         do i = 1, self%count
-            if (d(i) > self%upper(i) .or. d(i) < self%lower(i)) call self%advance_to(i, d(i))
-         end do
-         if (self%stuck) return
-      end if
+      call leave_lines(self, d, again=.false.)
+      if (self%stuck) return
       ! Springs that have arrived do not move any more.
       call advance_all(self, d)
       call sum_up_joints(self)
@@ -651,14 +676,16 @@ contains
    pure logical function are_within(n, d, lower, upper)
       integer, intent(in) :: n
       real(wp), intent(in) :: d(n), lower(n), upper(n)
-      integer :: i, outside
+      real(wp) :: outside
+      integer :: i
 
-      outside = 0
+      outside = 0.0_wp
+      !$omp simd reduction(max:outside)
       do i = 1, n
-         outside = outside + merge(1, 0, d(i) > upper(i) .or. d(i) < lower(i) .or. &
-                                   .not. abs(d(i)) < out_of_bounds)
+         outside = max(outside, merge(0.0_wp, 1.0_wp, d(i) <= upper(i) .and. d(i) >= lower(i) .and. &
+                                      abs(d(i)) < out_of_bounds))
       end do
-      are_within = outside == 0
+      are_within = .not. outside > 0.0_wp
    end function are_within
 
    !> `advance_on_branch` for the two springs of one body.
@@ -690,12 +717,15 @@ contains
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), lower(n), upper(n)
-      integer :: i
+      integer :: i, one_way
 
+      one_way = 0
       do i = 1, n
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to(i) + d(i)) - d0(i)))*(to(i) - d(i))
          d(i) = to(i)
+         one_way = ior(one_way, unload_on_reversal(i))
       end do
+      if (one_way == 0) return
       do i = 1, n
          if (unload_on_reversal(i) > 0) lower(i) = to(i)
          if (unload_on_reversal(i) < 0) upper(i) = to(i)

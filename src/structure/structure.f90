@@ -157,7 +157,7 @@ module rbs_structure_structure
       procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
       ! Where deformations follow from the unknowns and the present stiffness of the springs
       procedure :: linearise, damp, add_damping, size_of_parts, clear_round_off, set_shape
-      procedure :: work_of_dead_load, spring_of, create_springs, add_ground, base_force, work_of
+      procedure :: work_of_dead_load, create_springs, add_ground, base_force, work_of
    end type structure_type
 
    !> Accelerations, forces and powers of the equation of motion at one state. `create` allocates it once,
@@ -650,20 +650,6 @@ contains
 
       work = 0.0_wp
    end function work_of_dead_load
-
-   !> The spring of a kind with a number among those of the kind; 0 if there are not so many.
-   pure integer function spring_of(self, kind, number) result(i)
-      class(structure_type), intent(in) :: self
-      integer, intent(in) :: kind, number
-      integer :: counted
-
-      counted = 0
-      do i = 1, size(self%location)
-         if (self%location(i)%kind == kind) counted = counted + 1
-         if (counted == number) return
-      end do
-      i = 0
-   end function spring_of
 
    !> The springs without deformation, layered joints under given axial forces.
    subroutine create_springs(self, springs, axial_force)

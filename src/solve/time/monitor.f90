@@ -82,7 +82,8 @@ contains
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is monitored
       logical, intent(in) :: floor
-      integer :: i, m, number
+      integer, allocatable :: slips(:), turns(:), layers(:)
+      integer :: i, m
 
       if (is_given(collapse_drift)) then
          if (motion%structure%by_storeys) then
@@ -97,16 +98,21 @@ contains
          allocate (self%lowest(m), self%highest(m), self%openings(size(self%watch)), &
                    self%rotation(motion%structure%n, 4), source=0.0_wp)
       end if
+      associate (kind => motion%structure%location%kind)
+         slips = pack([(i, i=1, size(kind))], kind == shear)
+         turns = pack([(i, i=1, size(kind))], kind == flexure)
+         layers = pack([(i, i=1, size(kind))], kind == layer)
+      end associate
       do i = 1, size(self%watch)
-         ! A kind that the structure does not have has the factor 0, with any spring.
-         self%watch(i)%slips = max(motion%structure%spring_of(shear, self%watch(i)%joint), 1)
-         self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
-         ! Behind the flexural springs come layers of joints, of which two give the strains of a section.
-         if (self%watch(i)%turns == 0) then
-            number = self%watch(i)%joint - count(motion%structure%location%kind == flexure)
-            self%watch(i)%turns = max(motion%structure%spring_of(layer, number), 1)
-            self%watch(i)%slips = max(motion%structure%spring_of(layer, number + 1), 1)
-         end if
+         associate (watch => self%watch(i), behind => self%watch(i)%joint - size(turns))
+            watch%slips = numbered(slips, watch%joint)
+            watch%turns = numbered(turns, watch%joint)
+            ! Behind the flexural springs come layers of joints, of which two give the strains of a section.
+            if (behind > 0) then
+               watch%turns = numbered(layers, behind)
+               watch%slips = numbered(layers, behind + 1)
+            end if
+         end associate
       end do
       self%peaks_type = peaks_type()
       self%collapsed = .false.
@@ -123,6 +129,15 @@ contains
       call update_openings(self, springs, q)
       call self%update(motion, springs, q, v, load, clock)
    end subroutine begin
+
+   !> The spring with a number in a list. A kind that the structure does not have has the factor 0, with any
+   !> spring.
+   pure integer function numbered(springs, number) result(spring)
+      integer, intent(in) :: springs(:), number
+
+      spring = 1
+      if (number <= size(springs)) spring = springs(number)
+   end function numbered
 
    !> The end of a step.
    subroutine update(self, motion, springs, q, v, load, clock)
@@ -342,16 +357,17 @@ contains
       real(wp), intent(in) :: lowest(m), highest(m), q0(m), v0(m), q1(m), v1(m)
       !> Excess of a cubic over its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
-      integer :: i, beyond
+      real(wp) :: clearance, more
+      integer :: i
 
-      beyond = 0
+      clearance = huge(1.0_wp)
+      !$omp simd reduction(min:clearance) private(more)
       do i = 1, m
-         associate (more => reach*(abs(v0(i)) + abs(v1(i))))
-            beyond = beyond + merge(1, 0, max(q0(i), q1(i)) + more >= highest(i) .or. &
-                                    min(q0(i), q1(i)) - more <= lowest(i))
-         end associate
+         more = reach*(abs(v0(i)) + abs(v1(i)))
+         clearance = min(clearance, highest(i) - (max(q0(i), q1(i)) + more), &
+                         (min(q0(i), q1(i)) - more) - lowest(i))
       end do
-      are_beyond = beyond > 0
+      are_beyond = .not. clearance > 0.0_wp
    end function are_beyond
 
    !> Value of a watch, which is compared with its threshold.

@@ -118,13 +118,16 @@ contains
    pure logical function in_bounds(m, q)
       integer, intent(in) :: m
       real(wp), intent(in) :: q(m)
-      integer :: i, within
+      real(wp) :: beyond
+      integer :: i
 
-      within = 0
+      ! NaN is not below the bound.
+      beyond = 0.0_wp
+      !$omp simd reduction(max:beyond)
       do i = 1, m
-         within = within + merge(1, 0, abs(q(i)) < out_of_bounds)
+         beyond = max(beyond, merge(0.0_wp, 1.0_wp, abs(q(i)) < out_of_bounds))
       end do
-      in_bounds = within == m
+      in_bounds = .not. beyond > 0.0_wp
    end function in_bounds
 
 end module rbs_solve_time_state
