@@ -6,6 +6,7 @@ Some commands are run by Python.
 from __future__ import annotations
 
 import os
+import re
 import sys
 from importlib.resources import files
 
@@ -34,6 +35,11 @@ _OF_PYTHON = ("&drawing", "&infill_of", "&node_load", "&target", "&assess", "&re
 _OF_FRAMES = ("live_load", "self_weight", "from_loads")
 
 
+def _word_of(found: re.Match[str]) -> str:
+    """Return a quoted text if it is one word; nothing of a comment, or of more words."""
+    return found[0] if found[0][0] != "!" and found[0][1:-1].isidentifier() else ""
+
+
 def case_for_python(words: list[str]) -> str:
     """Return the path of the case of `run`, `check` or `modes` if Python takes part in it."""
     path = next((word for word in words[1:] if os.path.isfile(word)), "")
@@ -42,7 +48,8 @@ def case_for_python(words: list[str]) -> str:
     if any(word.partition("=")[0] == "--report" for word in words):
         return path
     with open(path, encoding="utf-8", errors="replace") as file:
-        text = file.read().lower()
+        # Neither comments nor texts are groups.
+        text = re.sub(r"""'[^'\n]*'|"[^"\n]*"|!.*""", _word_of, file.read().lower())
     asked = any(name in text for name in _OF_PYTHON[3:])
     drawn = "&frame" in text and any(name in text for name in (*_OF_PYTHON, *_OF_FRAMES))
     # A column of a drawing without the layers of its joints

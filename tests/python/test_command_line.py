@@ -137,6 +137,17 @@ def test_console_command_hands_over_to_the_executable(folder):
             assert ("did you mean 'check'" in done.stderr) == (code == 2)
 
 
+def test_groups_in_comments_and_texts_are_none(tmp_path):
+    for text, own in (
+        ("&frame storeys = 3.0 /\n! &target and mass = 'from_loads'\n", True),
+        ("&case title = 'with &target' /\n&frame /\n", True),
+        ("&frame mass = 'from_loads' /\n", False),
+        ("&case title = 'it''s ! a house' /\n&assess code = 'asce_41' /\n", False),
+    ):
+        path = write(tmp_path, text)
+        assert python_command.case_for_python(["run", str(path)]) == ("" if own else str(path)), text
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -452,7 +452,7 @@ def test_a_building_is_drawn_by_its_fields(frame):
     page.one("#add-section").click()
     assert page.value("#f-drawing-name") == "C2"
     page.type("#f-drawing-name", "outer")
-    page.type("#f-concrete-fc", "25")
+    page.type("#f-concrete-fc", "35")
     Select(page.one("#f-bars-kind")).select_by_value("row")
     page.one("#add-row").click()
     page.type("#f-row-3-number", "1")
@@ -468,7 +468,7 @@ def test_a_building_is_drawn_by_its_fields(frame):
     Select(page.one("#f-column_of-3-line")).select_by_value("2")
     Select(page.one("#f-column_of-3-kind")).select_by_visible_text("W1")
     page.one("#add-node_load").click()
-    page.type("#f-node_load-1-load", "20")
+    page.type("#f-node_load-2-load", "20")
     page.one("#add-infill").click()
     page.one("#add-infill_of").click()
     Select(page.one("#f-infill_of-1-bay")).select_by_value("1")
@@ -486,7 +486,7 @@ def test_a_building_is_drawn_by_its_fields(frame):
     sections = {type(one).__name__ for one in building.columns.values()}
     assert sections == {"RectangularSection", "WallSection"}
     outer = next(one for one in building.columns.values() if getattr(one, "lap", None))
-    assert (outer.concrete.fc, outer.lap.length, outer.side.number) == (25e6, 0.7, 1)
+    assert (outer.concrete.fc, outer.lap.length, outer.side.number) == (35e6, 0.7, 1)
     assert building.infills
 
 

@@ -14,7 +14,7 @@ import rbsdem
 from rbsdem.codes import judge
 from rbsdem.web.answers import Answers
 from rbsdem.web.report import report_of_page
-from rbsdem.web.state import BUILDING
+from rbsdem.web.state import building
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
@@ -144,7 +144,7 @@ def test_a_building_is_that_of_its_case_file(text, tmp_path):
 def test_what_the_page_has_no_field_for_stays_in_its_case():
     """A frame of the page with rigid ends and a beam in the loft that it cannot draw."""
     page = Answers()
-    text = page.export({"state": BUILDING, "form": "namelist"}, None)["text"]
+    text = page.export({"state": building(), "form": "namelist"}, None)["text"]
     more = "&member_kind name = 'tie', modulus = 2e11, area = 4e-3, inertia = 1e-5 /\n"
     more += "&member name = 'brace', from = 'N-1-0', to = 'N-2-1', kind = 'tie' /\n"
     text = text.replace("&floor", f"{more}&floor", 1).replace("base =", "ends = 0.5, base =")

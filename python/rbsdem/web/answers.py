@@ -63,6 +63,15 @@ _POINTS = 24
 #: Factors of a motion for which the peak drift is shown.
 _SCALES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 
+#: A program that runs a case file of the page.
+_PROGRAM = """\
+# Beside it stands {0}.nml, the case file of the page.
+import rbsdem
+
+case = rbsdem.read_case("{0}.nml")
+result = case.run()
+print(result)
+"""
 Asked = Mapping[str, Any]
 Pause = Callable[[], None]
 
@@ -328,7 +337,7 @@ class Answers:
         elif form == "namelist":
             text = exports.namelist(case, self.records)
         else:
-            text = exports.python(case, found.drawn, f"{name}.nml")
+            text = _PROGRAM.format(name)
         return {"text": text, "name": name}
 
     def open(self, asked: Asked, pause: Pause) -> dict[str, Any]:

@@ -22,9 +22,9 @@ from urllib.parse import urlsplit
 from rbsdem.errors import InputError
 from rbsdem.measured.specimens import Specimens
 from rbsdem.web.answers import LANES, ONCE, Answers, defect
-from rbsdem.web.exports import TYPES, parts
+from rbsdem.web.pages import TYPES, parts
 from rbsdem.web.report import report_of_page
-from rbsdem.web.state import BUILDING, DEFAULT, RefusedError
+from rbsdem.web.state import DEFAULT, RefusedError, building
 
 #: Largest request [bytes]: a state, and the text of a file.
 MOST_STATE, MOST_TEXT = 1_000_000, 8_000_000
@@ -219,7 +219,7 @@ class _Handler(BaseHTTPRequestHandler):
         if path == "start":
             near = self.server.answers.near is not None
             begin = {"state": self.server.start, "tests": near}
-            begin |= {"columns": DEFAULT, "frame": BUILDING}
+            begin |= {"columns": DEFAULT, "frame": building()}
             self._send(200, json.dumps(begin).encode(), "application/json")
             return
         name = path or "index.html"

@@ -14,6 +14,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -24,10 +25,11 @@ from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.examples import house
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion, synthetic
-from rbsdem.run.case import Case, case_of_text
+from rbsdem.run.case import Case, case_of_text, groups_of_text
 from rbsdem.run.groups import section_of
 from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.section import columns
@@ -39,7 +41,6 @@ Groups: TypeAlias = Sequence[Group]
 
 _DRIFTS = [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06]
 _DRAWN = {"version": VERSION}
-_STEELS: list[Any] = [["steel", {"id": 1, "fy": 450e6}], ["steel", {"id": 2, "fy": 400e6}]]
 
 # fmt: off
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
@@ -54,34 +55,6 @@ DEFAULT: dict[str, Any] = {"cases": [[
     ["layout", {"number": 12, "diameter": 0.016, "steel": 1}],
     ["ties", {"diameter": 0.007, "spacing": 0.085, "steel": 2, "legs": 4}],
     ["loading", {"drive": "displacement", "unit": "drift", "amplitudes": _DRIFTS, "cycles": [2]}],
-]]}
-
-#: The building that the page begins with.
-BUILDING: dict[str, Any] = {"cases": [[
-    ["frame", {
-        "storeys": [3.2] * 3, "bays": [6.0, 6.0], "kinematics": "pdelta", "live_share": 0.3,
-        "self_weight": True, "mass": "from_loads",
-    }],
-    ["floor", {"dead_load": 20e3, "live_load": 8e3}],
-    ["column_of", {"kind": "C1"}],
-    ["beam_of", {"kind": "B1"}],
-    ["damping", {"modal": [0.05]}],
-    ["drawing", {"name": "C1", **_DRAWN}],
-    ["section", {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.03}],
-    ["concrete", {"fc": 30e6}],
-    *_STEELS,
-    ["layout", {"number": 8, "diameter": 0.02, "steel": 1}],
-    ["ties", {"diameter": 0.008, "spacing": 0.1, "steel": 2}],
-    ["drawing", {"name": "B1", **_DRAWN}],
-    ["section", {"shape": "rectangle", "width": 0.3, "depth": 0.5, "cover": 0.03}],
-    ["concrete", {"fc": 30e6}],
-    *_STEELS,
-    ["row", {"face": "top", "number": 4, "diameter": 0.016, "steel": 1}],
-    ["row", {"face": "bottom", "number": 3, "diameter": 0.016, "steel": 1}],
-    ["ties", {"diameter": 0.008, "spacing": 0.15, "steel": 2}],
-    ["loading", {"drive": "displacement", "values": [0.288]}],
-    ["target", {"method": "en_1998", "spectrum": "en_1998", "ag": 0.25, "soil": "C"}],
-    ["assess", {"code": "en_1998_3"}],
 ]]}
 # fmt: on
 
@@ -106,6 +79,23 @@ _OF_DRAWING = (
 )
 #: Keys of the page that objects of the program call otherwise.
 _OWNERS = {"bars": "row", "footing": "column"}
+
+
+@cache
+def building() -> dict[str, Any]:
+    """Return the state that a building begins with: the ready house, pushed, beside a code."""
+    text = house(3).to_namelist().replace("section-1", "C1").replace("section-2", "B1")
+    drawn = [
+        [name, {**values, "steel": 1} if name == "row" else values]
+        for name, values in groups_of_text(text)
+        if name != "analysis"
+    ]
+    asked = [
+        ["loading", {"drive": "displacement", "values": [0.288]}],
+        ["target", {"method": "en_1998", "spectrum": "en_1998", "ag": 0.25, "soil": "C"}],
+        ["assess", {"code": "en_1998_3"}],
+    ]
+    return {"cases": [[*drawn, *asked]]}
 
 
 class RefusedError(Exception):
