@@ -23,6 +23,7 @@ from rbsdem._package import unwarned
 from rbsdem._types import Array, Axes, DataFrame
 from rbsdem.curves.envelope import Envelope, envelope
 from rbsdem.errors import InputError, SolveError
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.springs import PeakOriented
 
 Material = Literal["Hysteretic", "IMKPeakOriented"]
@@ -270,7 +271,7 @@ class LumpedHinge(Tabular):
         )
 
 
-def lumped_hinge(result: rbsdem.Result) -> LumpedHinge:
+def lumped_hinge(result: ColumnResult) -> LumpedHinge:
     """Return the column of a static path as one hinge at its foot; see `Result.lumped_hinge`."""
     column = result.column
     if result.dynamic or "axial_load" in result.call:
@@ -305,7 +306,7 @@ def lumped_hinge(result: rbsdem.Result) -> LumpedHinge:
     return LumpedHinge(*loop, tuple(backbones), *own, tried[kind][0], kind)
 
 
-def _loop(result: rbsdem.Result) -> tuple[Array, Array]:
+def _loop(result: ColumnResult) -> tuple[Array, Array]:
     """Return rotation and moment in equal steps from corner to corner, whatever rows were kept."""
     theta = result.path.displacement / result.column.height
     moment = result.path.base_moment
@@ -317,7 +318,7 @@ def _loop(result: rbsdem.Result) -> tuple[Array, Array]:
     return np.interp(at, ends, theta), np.interp(at, ends, moment)
 
 
-def _push(column: Any, reach: float) -> rbsdem.Result:
+def _push(column: Any, reach: float) -> ColumnResult:
     """Return the push to one side, up to where it can be followed."""
     with unwarned():
         try:
@@ -330,7 +331,7 @@ def _push(column: Any, reach: float) -> rbsdem.Result:
             if error.result is None:
                 raise
             run = error.result
-    found: rbsdem.Result = run
+    found: ColumnResult = run
     return found
 
 

@@ -41,11 +41,11 @@ from rbsdem.run.analysis import matrices as matrices
 from rbsdem.run.analysis import modes as modes
 from rbsdem.run.case import read_case as read_case
 from rbsdem.run.case import read_result as read_result
-from rbsdem.run.column_result import Result as Result
 from rbsdem.run.protocol import protocol as protocol
 from rbsdem.run.response import cyclic as cyclic
 from rbsdem.run.response import pushover as pushover
 from rbsdem.run.response import time_history as time_history
+from rbsdem.run.rows import Result as Result
 from rbsdem.run.solver import Solver as Solver
 from rbsdem.section.frame import Frame as Frame
 from rbsdem.section.plan import Building as Building

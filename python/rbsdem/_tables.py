@@ -1,8 +1,7 @@
 """The one reader of tables of numbers: measured histories, ground motions, hazard curves.
 
-A table is text with a row of numbers a line. What separates the numbers and what stands before
-their decimals, the lines above the first row, the names of the columns and their units are found,
-or stated by the caller.
+A table is text with a row of numbers a line. Its separators, its decimal sign, the lines above the
+first row, the names of the columns and their units are found, or stated by the caller.
 """
 
 from __future__ import annotations

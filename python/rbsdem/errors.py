@@ -127,7 +127,7 @@ _TOLD: ContextVar[set[str] | None] = ContextVar("_TOLD", default=None)
 
 @contextmanager
 def each_told_once() -> Iterator[None]:
-    """Make many alike, of which one warning speaks for all."""
+    """Give each warning once in this block, where many similar objects are made."""
     token = _TOLD.set(set())
     try:
         yield

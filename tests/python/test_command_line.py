@@ -144,8 +144,8 @@ def test_groups_in_comments_and_texts_are_none(tmp_path):
         ("&frame mass = 'from_loads' /\n", False),
         ("&case title = 'it''s ! a house' /\n&assess code = 'asce_41' /\n", False),
     ):
-        path = write(tmp_path, text)
-        assert python_command.case_for_python(["run", str(path)]) == ("" if own else str(path)), text
+        path = str(write(tmp_path, text))
+        assert python_command.case_for_python(["run", path]) == ("" if own else path), text
 
 
 @pytest.mark.parametrize(

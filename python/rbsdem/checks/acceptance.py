@@ -40,7 +40,7 @@ _PRIMARY = (1.5, 1.15)
 
 
 class HasTarget(Protocol):
-    """What has a displacement in the rows of a push-over, as `rbsdem.codes.Target`."""
+    """A record with a displacement in the rows of a push-over, as `rbsdem.codes.Target`."""
 
     @property
     def signed(self) -> float:
@@ -52,7 +52,7 @@ class HasTarget(Protocol):
 
 
 class _Demand(NamedTuple):
-    """What an end of a member undergoes, or a joint with its column and a beam as sections."""
+    """Forces and rotation of an end of a member, or of a joint of a column and a beam."""
 
     member: str
     end: str
@@ -78,7 +78,7 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
     result : FrameResult
         The result.
     rows : ndarray of float
-        Rows; between two of them with the share of the way.
+        Rows; 3.5 is half way between rows 3 and 4.
     """
     frame, of = result.frame, partial(between, rows)
     demands_of_ends = []
@@ -121,7 +121,7 @@ def _face(way: Array, upright: bool) -> str:
 
 
 def between(rows: Array, values: Array) -> Array:
-    """Return the columns of an array in some rows, between two with the share of the way.
+    """Return the columns of an array in some rows; row 3.5 is half way between rows 3 and 4.
 
     Parameters
     ----------
@@ -384,7 +384,7 @@ class Assessment(Tabular):
     def states(self) -> dict[tuple[str, str], int]:
         """Return the number of levels that each end exceeds; -1: not covered.
 
-        What exceeds its shear strength exceeds all.
+        An end that exceeds its shear strength exceeds all levels.
         """
         highest: dict[tuple[str, str], int] = {}
         for row in self.rows:

@@ -20,7 +20,7 @@ from rbsdem.curves.metrics import Curve, loop_pair, summarise
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.limit_states import limit_states
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.quantities import Quantities, goodnight_buckling_strain, quantities
@@ -411,7 +411,7 @@ class CodeComparison(Tabular):
     """
 
     values: CodeValues
-    result: Result
+    result: ColumnResult
     test: tuple[Array, Array] | None = None
 
     @cached_property
@@ -442,7 +442,7 @@ class CodeComparison(Tabular):
         return f"CodeComparison({', '.join(b.name for b in self.backbones)} beside {self.result})"
 
 
-def compare(values: CodeValues, result: Result, test: Curve | None = None) -> CodeComparison:
+def compare(values: CodeValues, result: ColumnResult, test: Curve | None = None) -> CodeComparison:
     """Hold a response, and a test if there is one, against the values of codes.
 
     Parameters

@@ -512,7 +512,7 @@ def _named_number(text: str) -> tuple[str, float]:
 
 
 def _read_hazard(path: Path) -> Hazard:
-    """Return the hazard of a csv with two columns, perhaps with names."""
+    """Return the hazard of a csv with two columns, with or without a heading."""
     table = read_table(path)
     if table.columns != 2:
         raise InputError(

@@ -35,9 +35,9 @@ def beyond(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array,
     Returns
     -------
     row : ndarray, shape (k,)
-        Numbers of the rows, between two rows with the share of the way.
+        Numbers of the rows; 3.5 is half way between rows 3 and 4.
     displacement, force : ndarray, shape (k,)
-        There, with the sign that they have to that side [m, N].
+        Values at these rows, with their sign on that side [m, N].
 
     Raises
     ------
@@ -139,8 +139,8 @@ def strength_loss_point(
     Returns
     -------
     row : float
-        Number of the row there, between two rows with the share of the way; where the envelope is
-        not the curve itself, that of the next point of the envelope. NaN if there is none.
+        Number of the row there; 3.5 is half way between rows 3 and 4. Where the envelope is not
+        the curve itself, that of the next point of the envelope. NaN if there is none.
     displacement : float
         That of `strength_loss`.
 

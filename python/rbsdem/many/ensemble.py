@@ -42,7 +42,7 @@ from rbsdem.many.plan import (
     one_run,
 )
 from rbsdem.many.store import Store
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.rows import bibtex, parts_of
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 from rbsdem.section.frame import Frame, Structure
@@ -303,7 +303,7 @@ class Ensemble(Tabular):
             errors[run] = text
         return data_frame(values | {"warnings": self.warnings.astype(object), "error": errors})
 
-    def history(self, run: int) -> Result:
+    def history(self, run: int) -> ColumnResult:
         """Solve one run again, with its history; the bits are those of the run.
 
         Parameters
@@ -327,7 +327,7 @@ class Ensemble(Tabular):
         name, column = list(self.columns.items())[self.column[run]]
         motion = list(self.motions.values())[self.motion[run]]
         state = self.initial.get(name, inputs.AT_REST)
-        result: Result = one_run(column, motion, float(self.scale[run]), self.settings, state)
+        result: ColumnResult = one_run(column, motion, float(self.scale[run]), self.settings, state)
         return result
 
 
@@ -591,7 +591,7 @@ def _longest(each: Array, lanes: NDArray[np.int32], workers: int) -> float:
 
 
 class _TaskSizer:
-    """The expected seconds of the next task, of which a few real ones come."""
+    """The expected seconds of the next task, found from the seconds of those done."""
 
     def __init__(self, each: Array, lanes: NDArray[np.int32], workers: int) -> None:
         self._most = _longest(each, lanes, workers)

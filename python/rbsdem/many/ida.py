@@ -101,7 +101,7 @@ def search_collapse(
     search : CollapseSearch
         How.
     refine : sequence of str
-        Limit states among the measures, each of which is found to within 5 % too.
+        Limit states among the measures; the intensity of each is found to within 5 %, too.
 
     Returns
     -------

@@ -17,7 +17,7 @@ from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.solve import state_of
 from rbsdem.section.criteria import WATCHED
 from rbsdem.section.frame import Frame, Structure, checked_structure
@@ -141,7 +141,7 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
     """
     if initial is None:
         return [AT_REST] * len(names)
-    if isinstance(initial, (str, os.PathLike, Result, np.ndarray)):
+    if isinstance(initial, (str, os.PathLike, ColumnResult, np.ndarray)):
         return [_state(initial, "", faults)] * len(names)
     if isinstance(initial, Mapping):
         unknown = [name for name in initial if name not in names]
@@ -202,7 +202,7 @@ def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]
 
 
 #: A measure of the user: a function of the `Result` of a run.
-Measure: TypeAlias = Callable[[Result], float]
+Measure: TypeAlias = Callable[[ColumnResult], float]
 
 #: The fates of a run, in the order of their numbers in the Fortran part; "" is a run that was not
 #: started because the ensemble was broken off.
@@ -270,7 +270,7 @@ def storey_measures(storeys: int) -> tuple[str, ...]:
 
 
 def measures_in_a_list(measures: Any) -> list[Any]:
-    """Return measures, of which one may stand alone, as a list."""
+    """Return measures as a list; a single one may be given alone."""
     if isinstance(measures, str) or callable(measures):
         return [measures]
     return _arguments.several(measures, "measures", "names and functions")

@@ -115,7 +115,7 @@ class Outcome:
 
     @classmethod
     def none(cls, plan: Plan, status: str = "", error: str = "") -> Outcome:
-        """Return the outcome of runs of which nothing came back."""
+        """Return the outcome of runs that gave nothing back."""
         runs = len(plan)
         return cls(
             np.full(runs, inputs.STATUSES.index(status), dtype=np.int8),

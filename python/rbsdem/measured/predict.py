@@ -37,7 +37,7 @@ from rbsdem.run.bands import (
     scatter_of_tests,
 )
 from rbsdem.run.bands import band as band_of
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.response import cyclic
 from rbsdem.run.sisters import Learned, Loop, learn
 from rbsdem.section.columns import DEFAULT, model_name
@@ -211,7 +211,7 @@ def predict(
     displacement : array_like, shape (m,), optional
         Path of the top [m], for columns that nobody tested. Without it, that of each test.
     near : path-like, or iterable of Specimen or Prediction, optional
-        Tests, or their folder, of which the five that are most like each column stand beside it.
+        Tests, or their folder; the five that are most like each column stand beside it.
         Those that are not predicted yet are predicted by the same model.
     given : iterable of Specimen, optional
         Tests of the same laboratory and series with their histories. What they say of its strength,
@@ -227,9 +227,9 @@ def predict(
     Returns
     -------
     Prediction, or list of Prediction
-        A row for each test, in their order, of which `rbsdem.peer.scores` makes a DataFrame; the
-        row itself for one specimen. Of several, a test that goes wrong has a row with the text of
-        the error.
+        A row for each test, in their order; the row itself for one specimen. Of several tests one
+        that goes wrong has a row with the text of the error. `rbsdem.peer.scores` makes a DataFrame
+        of the list.
 
     Raises
     ------
@@ -355,7 +355,7 @@ def _row(
             # A fault in one model is a row of the table and does not end the others.
             kind = "" if isinstance(fault, RbsdemError) else f"{type(fault).__name__}: "
             found, result = {"status": "failed", "error": f"{kind}{fault}"}, None
-        if isinstance(result, Result):
+        if isinstance(result, ColumnResult):
             force[: result.force.size] = result.force
             if limit_states:
                 found["limit_states"] = {s.name: abs(s.drift) for s in result.limit_states()}

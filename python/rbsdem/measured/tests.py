@@ -435,7 +435,7 @@ def read_test(
     """Read a test from a laboratory's own csv or text file, check it, and find the net force.
 
     Separator, decimal point, lines above the numbers, names and units are found in the file, or
-    stated. What comes back goes where a test of the database goes: `rbsdem.compare`,
+    stated. The result goes where a test of the database goes: `rbsdem.compare`,
     `rbsdem.calibrate`, `rbsdem.plot.loop`, and `cyclic(column, displacement=test.displacement)`.
 
     Parameters

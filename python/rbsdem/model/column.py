@@ -200,7 +200,7 @@ class Footing:
     Raises
     ------
     InputError
-        If a spring is missing or a number is not one. What depends on the column is checked there.
+        If a spring is missing or a number is not one. The column checks the rest.
     """
 
     shear: Spring

@@ -1,7 +1,6 @@
 """Sections as drawn: shape, concrete, bars and transverse bars, and what follows from them at once.
 
-What a section can be asked beyond that (diagrams, strengths, springs, its column) stands in
-`rbsdem.section`.
+Diagrams, strengths, springs and columns of sections stand in `rbsdem.section`.
 """
 
 from __future__ import annotations
@@ -217,7 +216,7 @@ class Section(_Fields, ABC):
 
     @abstractmethod
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
-        """Return x, y and diameter of bars of which y and diameter are given [m]."""
+        """Return x, y and diameter of bars from their y and diameter [m]."""
 
     def _set_default(self, name: str, otherwise: float | None) -> None:
         """Set a size that follows from another unless it is given."""
@@ -969,7 +968,7 @@ def _by_height(bar: Bar) -> tuple[float, float, float]:
 
 
 def _rows(bars: Any, face: str) -> tuple[Bars, ...]:
-    """Return the rows of a face, of which there may be one alone."""
+    """Return the rows of a face as a tuple; a single row may be given alone."""
     if bars is None or isinstance(bars, Bars):
         return () if bars is None else (bars,)
     rows = _arguments.several(bars, f"section: {face}", "rows of Bars")

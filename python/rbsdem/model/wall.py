@@ -520,7 +520,7 @@ class WallSection(Section):
         return legs
 
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
-        """Return x, y and diameter of bars of which y and diameter are given: in rows [m]."""
+        """Return x, y and diameter of bars from their y and diameter, placed in rows [m]."""
         placed = []
         half, ends = 0.5 * self.length, self._thicker()
         for zone, thickness in ((-1, ends[0][1]), (0, self.thickness), (1, ends[1][1])):

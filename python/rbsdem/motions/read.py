@@ -444,7 +444,7 @@ def _words(line: str) -> list[str]:
 
 
 def _begin_with_times(rows: Sequence[str]) -> bool:
-    """Whether rows are pairs of which nearly all first numbers ascend."""
+    """Whether rows are pairs, and nearly all of their first numbers ascend."""
     pairs = [_NUMBER.findall(row) for row in rows]
     times = np.array([_float(pair[0]) for pair in pairs if len(pair) == 2])
     return len(times) >= 0.8 * len(pairs) and float(np.mean(np.diff(times) > 0)) >= 0.8

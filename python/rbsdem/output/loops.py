@@ -33,7 +33,7 @@ from rbsdem.output.style import (
     style_of,
 )
 from rbsdem.output.units import factor, labelled
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.limit_states import LimitStates
 from rbsdem.run.rows import ENERGIES
 
@@ -124,7 +124,7 @@ def loop(
     >>> ax.get_xlabel()
     'Top displacement (mm)'
     """
-    shaken = force is None and isinstance(curve, Result) and curve.dynamic
+    shaken = force is None and isinstance(curve, ColumnResult) and curve.dynamic
     d, f = _curve((curve, force) if force is not None else curve, "the loop")
     with axes_or_new(ax) as drawn:
         drawn.plot(d, f, **line_of(MODEL_LINE, line))
@@ -482,7 +482,7 @@ _ENERGY_LABELS = {
 
 
 def history(
-    result: Result, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
+    result: ColumnResult, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
 ) -> Axes:
     """Draw a response over time, or over the points of a static path.
 
@@ -507,7 +507,7 @@ def history(
     InputError
         If `over` is none of these.
     """
-    _arguments.instance(result, "history: result", Result)
+    _arguments.instance(result, "history: result", ColumnResult)
     over = _arguments.choice(over, "over", _OVER)
     words, unit = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
@@ -518,14 +518,14 @@ def history(
     return drawn
 
 
-def _along(result: Result, ax: Axes, label: str) -> None:
+def _along(result: ColumnResult, ax: Axes, label: str) -> None:
     """Dress axes whose x is the time, or the points of a path."""
     ax.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
     ax.set(xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel=label)
     ax.tick_params(right=True, top=True)
 
 
-def energy(result: Result, *, ax: Axes | None = None) -> Axes:
+def energy(result: ColumnResult, *, ax: Axes | None = None) -> Axes:
     """Draw the energies of a response over time; those that stay zero are left out.
 
     Parameters
@@ -552,7 +552,7 @@ def energy(result: Result, *, ax: Axes | None = None) -> Axes:
 
 
 def profile(
-    result: Result,
+    result: ColumnResult,
     time: ArrayLike | None = None,
     *,
     axes: Sequence[Axes] | AxesArray | None = None,
@@ -614,7 +614,7 @@ def profile(
     return np.asarray(axes)
 
 
-def _lengths(result: Result) -> Array:
+def _lengths(result: ColumnResult) -> Array:
     column = result.column
     lengths, *_ = bodies(column)
     beneath = () if column.footing is None else (column.footing.height,)

@@ -25,7 +25,7 @@ from rbsdem.output.style import (
     style_of,
 )
 from rbsdem.output.units import factor, labelled, paper
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.section import shear
 from rbsdem.section.criteria import buckling_strain
 from rbsdem.section.curvature import Diagram, Events, strains
@@ -355,7 +355,7 @@ def _outline(diagram: InteractionDiagram, axial: str, moment: str) -> tuple[Arra
 
 
 def section_state(
-    result: Result, time: float, *, axes: Sequence[Axes] | AxesArray | None = None
+    result: ColumnResult, time: float, *, axes: Sequence[Axes] | AxesArray | None = None
 ) -> AxesArray:
     """Draw the hinge's section with its layers by state, and the strains over its depth.
 

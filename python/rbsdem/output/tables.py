@@ -51,7 +51,7 @@ def table(
     """Return a table for the terminal: mm, kN, kJ (or those of `plot.units`) and per cent.
 
     The unit of a number is at the end of its column's name (``peak_force_N``), or in the column
-    "unit" of its row. What has no name of this kind is printed as it is.
+    "unit" of its row. Other columns are printed as they are.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ def scales() -> dict[str, tuple[float, str]]:
 def paper(unit: str) -> tuple[float, str]:
     """Return the factor from a unit of SI to that on paper, and this one.
 
-    What has none on paper stays as it is.
+    Other units stay as they are.
     """
     return scales().get(unit, (1.0, unit))
 

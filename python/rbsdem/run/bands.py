@@ -116,7 +116,7 @@ def _frozen(value: Any) -> Any:
 
 
 class HasLearned(Protocol):
-    """What tests say of a laboratory, as `rbsdem.run.sisters.Learned`."""
+    """Factors of a laboratory, as `rbsdem.run.sisters.Learned` has them."""
 
     @property
     def logs(self) -> Array:
@@ -574,7 +574,7 @@ def _interval(
 
 
 def _degraded(column: LayeredColumn, factor: float) -> Column:
-    """Return the column with faster degradation; what a column limits is limited, not refused."""
+    """Return the column with faster degradation; values beyond its limits are cut, not refused."""
     drawing = column._drawing
     now = drawing.parameters.values
     values = {name: now[name] * factor**way for name, way in _DEGRADATION.items()}

@@ -14,7 +14,7 @@ from rbsdem.errors import InputError
 from rbsdem.run.accuracy import ErrorEstimate, Errors
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.limit_states import LimitStates
-from rbsdem.run.rows import Rows
+from rbsdem.run.rows import Result
 from rbsdem.section.plan import Building, Plane
 
 #: Channels of the nodes, of the members and of the springs of a building, and kinds of the last.
@@ -56,7 +56,7 @@ class FrameOfBuilding(FrameResult):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class BuildingResult(Rows):
+class BuildingResult(Result):
     """Rows of an analysis of a building: arrays with a row for each that was kept.
 
     Attributes
@@ -87,11 +87,6 @@ class BuildingResult(Rows):
         """The building."""
         building: Building = self.structure
         return building
-
-    @property
-    def column(self) -> Building:
-        """The structure, by the name that results of columns have for it."""
-        return self.building
 
     @property
     def scope_note(self) -> str:

@@ -20,7 +20,7 @@ from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import SPRING_GROUPS, Column, Damping, Footing, notes_off
 from rbsdem.run.building_result import BuildingResult
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.groups import (
     building_of,
@@ -31,7 +31,7 @@ from rbsdem.run.groups import (
     springs_of_joints,
 )
 from rbsdem.run.response import cyclic, time_history
-from rbsdem.run.rows import FORMAT, FORMAT_VERSION, SAVED, Rows, check_ending, same
+from rbsdem.run.rows import FORMAT, FORMAT_VERSION, SAVED, Result, check_ending, same
 from rbsdem.run.solver import Solver
 from rbsdem.section.frame import Frame, Structure
 from rbsdem.section.plan import Building
@@ -112,7 +112,7 @@ class Case:
 
     def run(
         self, column: Structure | None = None, **changes: Any
-    ) -> Result | FrameResult | BuildingResult:
+    ) -> ColumnResult | FrameResult | BuildingResult:
         """Solve the case as the executable does.
 
         Parameters
@@ -136,7 +136,9 @@ class Case:
         given: dict[str, Any] = self.loads | self.settings
         try:
             if self.method == "static":
-                result: Result | FrameResult | BuildingResult = cyclic(column, **(given | changes))
+                result: ColumnResult | FrameResult | BuildingResult = cyclic(
+                    column, **(given | changes)
+                )
             else:
                 given |= {"time": self.time, "method": self.method}
                 result = time_history(column, **(given | changes))
@@ -308,7 +310,7 @@ def groups_of_text(text: str) -> list[tuple[str, dict[str, Any]]]:
 
 @contextlib.contextmanager
 def _as_file(text: str) -> Iterator[Path]:
-    """Give the path of a file with a text, of which errors do not tell."""
+    """Give the path of a file with a text; errors do not name it."""
     with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
         path = Path(folder) / "case.nml"
         path.write_bytes(text.encode())
@@ -320,7 +322,7 @@ def _as_file(text: str) -> Iterator[Path]:
             raise InputError(str(error).replace(str(path), "case")) from None
 
 
-def case_of(result: Rows) -> Case:
+def case_of(result: Result) -> Case:
     """Return the case of a result: what was run, or its structure, loading and settings.
 
     Parameters
@@ -345,7 +347,7 @@ _DAMAGED = (
 )  # fmt: skip
 
 
-def read_result(path: str | os.PathLike[str]) -> Result | FrameResult | BuildingResult:
+def read_result(path: str | os.PathLike[str]) -> ColumnResult | FrameResult | BuildingResult:
     """Read a result that `Result.save` or `FrameResult.save` wrote.
 
     Parameters
@@ -403,7 +405,9 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
     return about, arrays
 
 
-def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResult | BuildingResult:
+def _result(
+    about: dict[str, Any], arrays: dict[str, Any]
+) -> ColumnResult | FrameResult | BuildingResult:
     with notes_off():
         # Losses at a time are refused in a static case.
         method = "auto" if about["summary"]["analysis"] == "dynamic" else "static"
@@ -415,6 +419,6 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResu
                 drawn = case_of_text(about["drawing"] + analysis).column
                 structure = drawn if drawn == structure else structure
     own = {name: _together(about[name], arrays) for name in SAVED}
-    kind: Any = FrameResult if isinstance(structure, Frame) else Result
+    kind: Any = FrameResult if isinstance(structure, Frame) else ColumnResult
     kind = BuildingResult if isinstance(structure, Building) else kind
     return kind(structure=structure, case=case, **own)  # type: ignore[no-any-return]

@@ -16,12 +16,14 @@ from rbsdem.model.column import Column
 from rbsdem.model.springs import Gauge, Layered, Strains, strains_of
 from rbsdem.run.limit_states import Hinge
 from rbsdem.run.limit_states import hinge as hinge_of
-from rbsdem.run.rows import Rows
+from rbsdem.run.rows import Result
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Result(Rows):
+class ColumnResult(Result):
     """The result of an analysis of a column: a row for each kept step, a column for each joint.
+
+    Summary, structure, call and others are those of `rbsdem.Result`.
 
     Attributes
     ----------
@@ -46,24 +48,6 @@ class Result(Rows):
         Energies [J]: "input" (work of lateral force and ground motion), "kinetic", "spring"
         (stored and dissipated), "damping", "axial" (potential of axial load and weight), and
         "residual", which is input + energy at the start minus the other energies.
-    summary : dict
-        Figures of the analysis: "analysis" ("static" or "dynamic"), "driven" (static),
-        "kinematics", the "method" that was used and, if the program chose it, the "reason";
-        "status": "completed", "collapsed" (`collapse_drift` was reached), "stopped" (`max_seconds`
-        were over), "ended" (a push-over that goes no farther, and why as "reason") or "failed" (the
-        result of a `SolveError`). Values: steps, rows, events (how often a spring left its line),
-        time_step and stable_step [s], peak_displacement [m], peak_force [N] and
-        displacement_at_peak_force [m] (static, where the force has the sign of the displacement; in
-        time of a lateral force, if there is one), peak_base_shear [N], peak_rotation (largest
-        absolute rotation of a body [rad]), energies at the end [J], energy_residual [J] and
-        relative_energy_residual (the largest), cut_steps (steps cut at an event, for accuracy, or
-        because they did not converge); where members of a frame jumped to another equilibrium,
-        snaps (in how many steps), snap_energy (lost in them [J]), snap_member and snap_time [s]
-        (number of the one that lost most, and when); where a member carries its load no more,
-        fallen_member; where a static path snaps back, snap_backs and released_energy (by a test
-        that holds the top [J]). Whatever rows are kept, they are those of all points or steps, the
-        residual that of all points or times of the loading; "rk45" and located events resolve peaks
-        within a step.
     opening : ndarray, shape (steps, n)
         Opening of the joints at the middle of the section [m]: of axial springs, and, if the
         analysis was called with ``openings=True``, of layered joints. Zero for other joints.
@@ -71,25 +55,9 @@ class Result(Rows):
         Forces of the axial springs, tension positive [N]; None if joints do not open.
     top : ndarray, shape (steps, 2)
         Position (x, y) of the top relative to the ground [m].
-    column, structure : Column
-        The column.
-    call : dict
-        The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
-    channels : dict of ndarray
-        The quantities that the rows hold, by name, in the order of the executable's csv.
-    case : rbsdem.run.case.Case or None
-        The case that was run; None if the analysis was called for the column.
-    state : ndarray or None
-        The state at the end, in numbers whose meaning is the program's own: what the springs
-        remember, where the column is and how it moves. ``initial=result`` begins another analysis
-        from it. None after a failure, and where a joint has lost its axial load.
     rest : ndarray, shape (steps, n), or None
         Rotations of layered joints under their first axial load, from which `rotation` counts
         [rad]; zero but for unsymmetric sections. None if the openings were not kept.
-    reached : ndarray, shape (criteria, 2), or None
-        Of an analysis in time: when each criterion of `limit_states` that could be looked at was
-        met first [s], and the displacement of the top then [m]; NaN where it was not. All steps
-        count, whatever rows are kept.
     """
 
     _derived: ClassVar[tuple[str, ...]] = ("energy", "base_shear", "base_moment", "opening", "top")

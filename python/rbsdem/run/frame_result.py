@@ -18,7 +18,7 @@ from rbsdem.errors import InputError
 from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of, parabola
 from rbsdem.model.springs import Landmark, LandmarkName
 from rbsdem.run.limit_states import LimitState, LimitStates
-from rbsdem.run.rows import Rows
+from rbsdem.run.rows import Result
 from rbsdem.section.criteria import Criterion, joint_criteria
 from rbsdem.section.frame import Frame
 from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
@@ -50,7 +50,7 @@ _REACHED = 1.0 - 1e-9
 
 @dataclass(frozen=True, repr=False)
 class MemberHistory:
-    """How a member goes: arrays with a row for each of the result.
+    """The history of a member: arrays with a row for each row of the result.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class MemberHistory:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FrameResult(Rows):
+class FrameResult(Result):
     """The result of an analysis of a frame: arrays with a row for each that was kept.
 
     Attributes
@@ -120,8 +120,8 @@ class FrameResult(Rows):
         Force of supports and springs of the ground along x [N]; in time with
         damping by mass.
     energy : dict of ndarray
-        Energies [J] as those of `Result`; "axial" is the potential of dead load, of second-order
-        work and of what is elastic.
+        Energies [J] as those of `ColumnResult`; "axial" is the potential of dead load, of
+        second-order work and of what is elastic.
     x, y, node_rotation : ndarray, shape (rows, nodes)
         Displacements of the nodes along x and upward [m], clockwise rotations [rad].
     member_axial, moment_from, moment_to : ndarray, shape (rows, members)
@@ -130,7 +130,7 @@ class FrameResult(Rows):
         Deformations and forces of the springs in members: rotation and moment, slip and shear,
         opening and axial_force, in the order of `Frame.parts`.
     summary, channels, reached, case
-        As those of `Result`.
+        As those of `rbsdem.Result`.
     frame, structure : Frame
         The frame.
     call : dict
@@ -152,11 +152,6 @@ class FrameResult(Rows):
         """The frame."""
         frame: Frame = self.structure
         return frame
-
-    @property
-    def column(self) -> Frame:
-        """The structure, by the name that results of columns have for it."""
-        return self.frame
 
     @property
     def scope_note(self) -> str:

@@ -36,11 +36,11 @@ class LimitState:
         Of `limit_states()`: "cracking", "first_yield", "nominal_moment", "hoop_yield", "spalling",
         "bar_buckling", "hoop_fracture", "bar_fracture", "cap", "shear_cracking", "shear_yield",
         "shear_failure", "strength_loss", "collapse" or "axial_failure"; of a frame
-        "infill_cracking", "infill_peak" and "infill_residual" too. Of the `events` of a frame
-        "cracking", "yield", "spalling", "cap", "shear_failure" or, of an infill, "residual" of a
-        spring; of a member "shear_failure", where its drift reaches that of it before a spring
-        does, "lost" where it carries its axial load no more, "snap" where its inside jumps to
-        another equilibrium (the jump that loses most energy), or "fall" where it has none any more.
+        "infill_cracking", "infill_peak" and "infill_residual" too. Of the `events` of a frame:
+        "cracking", "yield", "spalling", "cap" or "shear_failure" of a spring, "residual" of an
+        infill. Of a member: "shear_failure" where its drift reaches `shear_drift` before a spring
+        fails, "lost" where it no longer carries its axial load, "snap" where its inside jumps to
+        another equilibrium (the jump that loses most energy), "fall" where it has none left.
     row : int
         First row of the result at or behind it.
     time : float
@@ -293,7 +293,7 @@ def _axial_failure(result: Any, first: dict[str, LimitState]) -> list[LimitState
 
 
 def _state(result: Any, name: str, row: float, threshold: float, source: str) -> LimitState:
-    """Return the state at a row of the path, or between two with the share of the way."""
+    """Return the state at a row of the path; row 3.5 is half way between rows 3 and 4."""
     path = result.path
     rows = np.arange(path.time.size)
     time, displacement, force = (

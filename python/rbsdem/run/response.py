@@ -16,9 +16,9 @@ from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import NOTES_ON, Column
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.building_result import BuildingResult, both_planes_note
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult, shear_span_note, span_note
-from rbsdem.run.rows import Rows
+from rbsdem.run.rows import Result
 from rbsdem.run.solve import HasEndState, follow, march, tell
 from rbsdem.run.solver import Solver, checked_solver
 from rbsdem.section.frame import Frame, Structure, checked_structure
@@ -31,7 +31,7 @@ class Analysis(Protocol[P]):
     """An analysis: what it returns depends on the structure."""
 
     @overload
-    def __call__(self, column: Column, *arguments: P.args, **options: P.kwargs) -> Result: ...
+    def __call__(self, column: Column, *arguments: P.args, **options: P.kwargs) -> ColumnResult: ...
     @overload
     def __call__(  # type: ignore[overload-overlap]
         self, column: Building, *arguments: P.args, **options: P.kwargs
@@ -41,7 +41,7 @@ class Analysis(Protocol[P]):
     @overload
     def __call__(
         self, column: Structure, *arguments: P.args, **options: P.kwargs
-    ) -> Result | FrameResult | BuildingResult: ...
+    ) -> ColumnResult | FrameResult | BuildingResult: ...
 
 
 def _typed(run: Callable[Concatenate[Structure, P], Any]) -> Analysis[P]:
@@ -56,7 +56,7 @@ def cyclic(
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
     axial_load: ArrayLike | None = None,
-    initial: Rows | str | os.PathLike[str] | None = None,
+    initial: Result | str | os.PathLike[str] | None = None,
     every: int | None = None,
     collapse_drift: float | None = None,
     openings: bool = False,
@@ -168,7 +168,7 @@ def time_history(
     *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | GroundMotion | None = None,
-    initial: Mapping[str, ArrayLike] | Rows | str | os.PathLike[str] | None = None,
+    initial: Mapping[str, ArrayLike] | Result | str | os.PathLike[str] | None = None,
     vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
     ground_acceleration_y: ArrayLike | GroundMotion | None = None,
@@ -295,16 +295,16 @@ def _return(
     about: dict[str, str],
     call: dict[str, Any],
     reached: Array | None = None,
-) -> Result | FrameResult | BuildingResult:
+) -> ColumnResult | FrameResult | BuildingResult:
     arrays, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
     if "lost_joint" in summary and isinstance(column, Column):
         summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
-    kind: Any = FrameResult if isinstance(column, Frame) else Result
+    kind: Any = FrameResult if isinstance(column, Frame) else ColumnResult
     kind = BuildingResult if isinstance(column, Building) else kind
-    result: Result | FrameResult | BuildingResult = kind(
+    result: ColumnResult | FrameResult | BuildingResult = kind(
         arrays, summary, column, given, state, reached
     )
     if error is not None:

@@ -131,18 +131,46 @@ _OPTIONAL = ("axial_force", "rest", "lost")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Rows(_Channels):
-    """The result of an analysis of a column or a frame: a path or a response, row by row.
+class Result(_Channels):
+    """The result of an analysis, row by row: what those of columns, frames and buildings share.
 
     Attributes
     ----------
     channels : dict of ndarray
         Quantities that were kept, by name, as the columns of the executable's csv: one number a
         row, or one for each joint, node, member or spring.
-    summary, call, state, case
-        As those of `rbsdem.Result`.
+    summary : dict
+        Figures of the analysis: "analysis" ("static" or "dynamic"), "driven" (static),
+        "kinematics", the "method" that was used and, if the program chose it, the "reason";
+        "status": "completed", "collapsed" (`collapse_drift` was reached), "stopped" (`max_seconds`
+        were over), "ended" (a push-over that goes no farther, and why as "reason") or "failed" (the
+        result of a `SolveError`). Values: steps, rows, events (how often a spring left its line),
+        time_step and stable_step [s], peak_displacement [m], peak_force [N] and
+        displacement_at_peak_force [m] (static, where the force has the sign of the displacement; in
+        time of a lateral force, if there is one), peak_base_shear [N], peak_rotation (largest
+        absolute rotation of a body [rad]), energies at the end [J], energy_residual [J] and
+        relative_energy_residual (the largest), cut_steps (steps cut at an event, for accuracy, or
+        because they did not converge); where members of a frame jumped to another equilibrium,
+        snaps (in how many steps), snap_energy (lost in them [J]), snap_member and snap_time [s]
+        (number of the one that lost most, and when); where a member carries its load no more,
+        fallen_member; where a static path snaps back, snap_backs and released_energy (by a test
+        that holds the top [J]). Whatever rows are kept, they are those of all points or steps, the
+        residual that of all points or times of the loading; "rk45" and located events resolve peaks
+        within a step.
     structure : Column or Frame
         The structure.
+    call : dict
+        The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
+    case : rbsdem.run.case.Case or None
+        The case that was run; None if the analysis was called for the structure.
+    state : ndarray or None
+        The state at the end, in numbers whose meaning is the program's own: memory of the springs,
+        place and motion of the structure. ``initial=result`` begins another analysis from it. None
+        after a failure, and where a joint has lost its axial load.
+    reached : ndarray, shape (criteria, 2), or None
+        Of an analysis in time: when each criterion of `limit_states` that could be looked at was
+        met first [s], and the displacement of the top then [m]; NaN where it was not. All steps
+        count, whatever rows are kept.
     """
 
     channels: dict[str, Array]
@@ -156,6 +184,11 @@ class Rows(_Channels):
     _derived: ClassVar[tuple[str, ...]] = ("energy",)
 
     @property
+    def column(self) -> Any:
+        """The structure, whatever it is."""
+        return self.structure
+
+    @property
     def time(self) -> Array:
         """Time [s]; on a static path the number of the point."""
         return self.channels["time" if "time" in self.channels else "step"]
@@ -167,7 +200,7 @@ class Rows(_Channels):
 
     @property
     def base_action(self) -> Array:
-        """What is compared at the base: of a column the moment [N m], of a frame the shear [N]."""
+        """Base moment of a column [N m] or base shear of a frame [N], as results are compared."""
         return self.base_shear
 
     @property
@@ -204,12 +237,11 @@ class Rows(_Channels):
         """A static path from corner to corner: the rows of all points, and of the events between.
 
         Between two rows a static path is straight with small rotations under a constant axial load;
-        with exact rotations, or a load that varies, it is a piece of curve. `time` of a row between
-        two points holds the share of the way. If the first point is not where the path begins, its
-        beginning is the first row, at time -1. What is measured on a path is measured here, so that
-        it depends neither on `every` nor on points put on the way. The openings are kept. It is
-        found by the same analysis once more, when it is first asked for. A response in time is its
-        own path.
+        with exact rotations, or a load that varies, it is a piece of curve. The `time` 3.5 of a
+        row is half way between points 3 and 4. If the path begins before its first point, its
+        beginning is the first row, at time -1. Quantities of a path are measured here, so that they
+        depend neither on `every` nor on points put on the way. The openings are kept. The same
+        analysis finds it once more when it is first asked for. A response in time is its own path.
         """
         known = vars(self)
         if self.dynamic or "_is_path" in known:
@@ -497,7 +529,7 @@ class Rows(_Channels):
 
     def __eq__(self, other: object) -> bool:
         """Return whether another result has the same structure, rows and summary, bit for bit."""
-        if not isinstance(other, Rows):
+        if not isinstance(other, Result):
             return NotImplemented
         return all(
             same(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)

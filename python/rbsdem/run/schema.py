@@ -15,8 +15,8 @@ _SPRINGS = ("shear", "flexure", "axial_spring", "layer_spring")
 def case_schema() -> dict[str, Any]:
     """Return the JSON schema of a case as an object of groups, as f90nml reads a case file.
 
-    A group that may stand several times is an object or a list of them. What relates two keys, and
-    which groups go together, is not in it: ``rbsdem check`` says that.
+    A group that may stand several times is an object or a list of them. Relations between
+    keys, and which groups go together, are not in it: ``rbsdem check`` tells them.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What tests of one laboratory say of its other columns: a Bayes step with the scatter of bands.
+"""Columns of a laboratory predicted with its other tests: a Bayes step with the scatter of bands.
 
 Tests of one series (sisters) share a laboratory: its steel, its concrete, its rig. `Scatter` has
 how far the strength, the stiffness and the degradation of a laboratory are off, and how far those
@@ -38,7 +38,7 @@ class Loop:
 
 @dataclass(frozen=True)
 class Learned:
-    """What tests say of a laboratory.
+    """Factors of a laboratory, learned from its tests.
 
     Attributes
     ----------

@@ -426,7 +426,7 @@ def _half(
 
 def _check_own(model: LayeredModel) -> None:
     """Refuse parameters that a user gave, beyond what they can change in a column."""
-    # Those of another version are meant for all columns: what a column limits is limited.
+    # Those of another version are meant for all columns, and are cut to the limits of each.
     if model.parameters.version == VERSION and model.parameters is not _of_beams():
         model.check(model.parameters.own)
 

@@ -99,7 +99,7 @@ class Criterion:
 
 
 def criteria(column: Structure, names: Collection[str] = tuple(WATCHED)) -> Sequence[Criterion]:
-    """Return the criteria of a column; a state may have several, of which the first counts.
+    """Return the criteria of a column; where a state has several, the first to be reached counts.
 
     Parameters
     ----------

@@ -345,7 +345,7 @@ class Frame:
 
     @cached_property
     def given_springs(self) -> dict[FrameSpring, Spring | None]:
-        """What was given at the place of each spring: of a joint of layers the joint."""
+        """The spring that was given at each place; for the layers of a joint it is the joint."""
         panels = {node.name: node.panel for node in self.nodes}
         # Equal members are of one kind.
         known: dict[int, dict[tuple[str, float], Spring]] = {}
@@ -694,7 +694,7 @@ class Frame:
         ----------
         springs : bool, optional
             Whether members that were drawn are written with all their springs, as the executable
-            takes them; else by their sections, of which `rbsdem.read_case` makes them again.
+            takes them; else by their sections, from which `rbsdem.read_case` makes them again.
         """
         statement = self._statement if springs else self._groups()
         return _core.evaluate("to_namelist", statement).text

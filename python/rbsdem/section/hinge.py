@@ -142,7 +142,7 @@ def _restrained(section: Section) -> float:
 
 @dataclass(frozen=True)
 class HingeJoint:
-    """What the layered hinge gives a column.
+    """The layered hinge of a column, and the stiffness of the column above it.
 
     Attributes
     ----------

@@ -36,8 +36,8 @@ class Infill:
     It becomes two struts between the nodes, each of which carries compression alone, and none of
     the dead load. The horizontal force of a panel grows to V at the drift `peak_drift` of its clear
     height, with a crack at 0.8 V and eight times the stiffness, and falls to 0.3 V at a drift of 3
-    %; V = 0.42 MPa (f_m/MPa)^0.25 t l with the clear length l. What that predicts of tests, and
-    what it does not, is in ``docs/existing.md``.
+    %; V = 0.42 MPa (f_m/MPa)^0.25 t l with the clear length l. How well that predicts
+    tests is in ``docs/existing.md``.
 
     Parameters
     ----------

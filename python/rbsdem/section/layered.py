@@ -56,7 +56,7 @@ def lumping(n: int) -> float:
 
 @dataclass(frozen=True)
 class LayeredModel:
-    """What a layered column is made from.
+    """The section, sizes and parameters that a layered column is made from.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class LayeredModel:
         Parameters
         ----------
         top : {"free", "fixed"}
-            The latter is that of double curvature, of which the drawing is the lower half.
+            "fixed" is double curvature; the drawing is then its lower half.
         """
         return self.made if top == "free" else self._made_twice
 
@@ -206,7 +206,7 @@ class LayeredModel:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to tell of an odd axial load, and of values outside the tests of the fit."""
+        """Warnings: an odd axial load, and values outside the range of the tests of the fit."""
         note = axial_load_note(self.axial_load, self.section)
         return (*filter(None, [note]), *range_warnings(self.section, self.span, self.axial_load))
 
@@ -240,7 +240,8 @@ class LayeredModel:
 def part_of_height(spring: Pinching, share: float) -> Pinching:
     """Return the shear spring of a part of the height that one was made for, or of more than it.
 
-    All but the fall of its force is in proportion: the crack that fails is within one storey.
+    Deformations are in proportion to the height, but for the fall of the force after the peak: the
+    crack that fails is within one storey.
     """
     return (
         spring
@@ -423,7 +424,7 @@ class LayeredColumn(Column):
 
     @property
     def replaced(self) -> tuple[str, ...]:
-        """What of shear and flexure is not that of the model."""
+        """Those of "shear" and "flexure" whose springs are not those of the model."""
         return tuple(name for name in ("shear", "flexure") if self._kept(name))
 
     @property

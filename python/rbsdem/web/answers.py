@@ -33,7 +33,7 @@ from rbsdem.motions.read import read_motion
 from rbsdem.output.section import hoop_lines
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.case import Case
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.frame import Frame
 from rbsdem.section.layered import LayeredColumn
@@ -382,7 +382,7 @@ LANES = ("loops", "checks", "sections", "own", "bands", "scales", "nearest", *ON
 # ---- a response as JSON -------------------------------------------------------------------------
 
 
-def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
+def to_json(result: ColumnResult, factor: float = 1.0) -> dict[str, Any]:
     """Return a response as the page draws it.
 
     Parameters

@@ -17,7 +17,7 @@ from rbsdem._package import unwarned
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.run.case import Case, case_of_text, groups_of_text
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.frame import Frame
 from rbsdem.web.state import (
@@ -107,7 +107,7 @@ def _drawn_again(groups: list[Group], case: Case) -> list[Group] | None:
     return made if again.column == case.column else None
 
 
-def csv_of(result: Result | FrameResult) -> str:
+def csv_of(result: ColumnResult | FrameResult) -> str:
     """Return the rows of a result as the executable writes them."""
     with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
         rows = Path(folder) / "rows.csv"

@@ -17,7 +17,7 @@ from rbsdem._files import claim_folder, save_frame
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.output.units import units as paper_units
 from rbsdem.run.case import Case, case_of
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.web.pages import REPORT, one_file
@@ -150,7 +150,7 @@ def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]
     return {"text": page, "name": "report"}
 
 
-def _column_data(result: Result, case: Case, title: str) -> dict[str, Any]:
+def _column_data(result: ColumnResult, case: Case, title: str) -> dict[str, Any]:
     """Return the answers about a result; one without the openings of its hinge is run again.
 
     Strains of layers, from which most limit states follow, need them.
@@ -238,10 +238,10 @@ def write_record(
             f"report: units = {_arguments.shown(units)} must be a length and a force, as "
             '("in", "kip")'
         )
-    case = case_of(record) if isinstance(record, Result | FrameResult) else None
+    case = case_of(record) if isinstance(record, ColumnResult | FrameResult) else None
     target = Path(path)
     title = title or (case.title if case else "") or target.stem
-    data = _column_data(record, case, title) if case and isinstance(record, Result) else None
+    data = _column_data(record, case, title) if case and isinstance(record, ColumnResult) else None
     with paper_units(*units):
         sheets = list(sheets_of(record, **asked))
         front = head(title, author or "", project or "", date) + html_of(sheets[0])

@@ -32,7 +32,7 @@ from rbsdem.output.style import style
 from rbsdem.output.tables import cells
 from rbsdem.output.units import paper, scales
 from rbsdem.run.analysis import modes
-from rbsdem.run.column_result import Result
+from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram
 from rbsdem.section.frame import SCOPE_NOTE, Frame, Structure
@@ -199,7 +199,7 @@ def sheets_of(record: Any) -> Iterator[Sheet]:
 
 
 @sheets_of.register
-def _of_result(result: Result) -> Iterator[Sheet]:
+def _of_result(result: ColumnResult) -> Iterator[Sheet]:
     yield _of_structure(result.column)
     yield Sheet("Summary", str(result.error_estimate), table=_summary(result.summary))
     if result.dynamic:
@@ -245,7 +245,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
 
 
-def _walls(result: Result | FrameResult) -> Iterator[Sheet]:
+def _walls(result: ColumnResult | FrameResult) -> Iterator[Sheet]:
     """Yield what tests say of the accuracy of drawn walls."""
     told = "; ".join(f"{name}: {one}" for name, one in result.wall_accuracy().items())
     if told:
