@@ -524,16 +524,16 @@ def wear_tables(found: dict[str, Answers], folder: Path) -> None:
     models = [np.abs(one.park_ruitong.force[WAY - 1 :: WAY]) for one in found.values()]
     pairs = [(i, i + 2) for i in range(2, len(runs) - 2) if i % 4 in (2, 3)]
 
-    def loss(forces: np.ndarray, pair: tuple[int, int]) -> str:
-        return (
-            f"{100 * (1 - forces[pair[1]] / forces[pair[0]]):.1f}" if forces.size > pair[1] else ""
-        )
+    def losses(forces: np.ndarray) -> np.ndarray:
+        lost = [100 * (1 - forces[j] / forces[i]) for i, j in pairs if j < forces.size]
+        return np.array([*lost, *[math.nan] * (len(pairs) - len(lost)), np.mean(lost)])
 
-    rows = []
-    for pair in pairs:
-        by_test = "; ".join(loss(test, pair) for test in tests)
-        by_model = (loss(model, pair) for model in models)
-        rows.append([f"{float(runs[pair[0]]['delta_mm']):.0f} mm", by_test, *by_model])
+    cells = [[f"{lost:.1f}" for lost in losses(one)] for one in (*tests, *models)]
+    names = [f"{float(runs[i]['delta_mm']):.0f} mm" for i, _ in pairs] + ["mean"]
+    rows = [
+        [name, f"{hand}; {digitised}", *by_model]
+        for name, hand, digitised, *by_model in zip(names, *cells, strict=True)
+    ]
     table("Park and Dai Ruitong, loss to the second cycle, %; test, by hand and digitised",
           list(found), rows)  # fmt: skip
 
