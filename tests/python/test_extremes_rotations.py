@@ -29,8 +29,7 @@ def test_top_that_is_driven_farther_than_the_column_is_long_slides_at_the_foot(n
     np.testing.assert_allclose(run.top[:, 0], run.displacement, atol=1e-9)
 
 
-@pytest.mark.parametrize("opens", [False, True], ids=["closed", "opening"])
-@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize(("n", "opens"), [(1, False), (2, False), (2, True)])
 def test_full_turns_against_hamiltons_equations(n, opens):
     """Weak joints, a fast spin: a full turn and more, where sine and cosine see all signs.
 
