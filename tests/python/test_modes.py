@@ -261,7 +261,7 @@ def beam_frequencies(
         carried[3] -= top_mass * omega**2 / scale[3] * carried[0]
         return np.linalg.det(carried[2:, 2:])
 
-    step = 0.05 * np.sqrt(BENDING / (line * HEIGHT**4))
+    step = 0.3 * np.sqrt(BENDING / (line * HEIGHT**4))
     roots = []
     below = free_top(step)
     for i in range(2, 100000):

@@ -11,6 +11,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._progress import Bar
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
 from rbsdem.errors import InputError, Interrupted, warn
 from rbsdem.many import inputs
@@ -358,8 +359,8 @@ class Collector:
         keywords = settings | {"scales": scales, "measures": list(self.names)}
         before = sum(part["status"].size for part in self.parts)
         bar = keywords["progress"]
-        if callable(bar):
-            keywords["progress"] = lambda done, text: bar(before + done, text)
+        if isinstance(bar, Bar):
+            keywords["progress"] = Bar(lambda done, text: bar(before + done, text))
         try:
             runs = ensemble(dict(self.columns), dict(self.motions), **keywords)
         except Interrupted as error:
