@@ -316,7 +316,7 @@ contains
          return
       end if
       associate (frame => self%frame)
-         is_drawn = allocated(self%drawing) .or. size(frame%infill_of) > 0 &
+         is_drawn = allocated(self%drawing) .or. size(frame%infill_of) > 0 .or. allocated(frame%bays_x) &
                     .or. size(frame%node_load) > 0 .or. frame%self_weight &
                     .or. frame%mass /= 'of_floors' .or. any(abs(frame%floor%live_load) > 0.0_wp)
       end associate

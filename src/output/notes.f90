@@ -233,11 +233,12 @@ contains
       if (allocated(frame%storeys)) then
          do i = 1, size(frame%floor)
             call check_floor('mass', frame%floor(i)%mass, least_mass, 'kg', '40 t is 40e3')
-            call check_floor('dead_load', frame%floor(i)%dead_load, least_load, 'N/m', '10 kN/m is 10e3')
+            if (frame%floor(i)%is_loaded()) call check_floor('dead_load', maxval(frame%floor(i)%dead_load), &
+                                                             least_load, 'N/m', '10 kN/m is 10e3')
          end do
       end if
       heavy = any(frame%floor%mass > 0.0_wp) .or. any(frame%node%mass > 0.0_wp)
-      loaded = any(abs(frame%floor%dead_load) > 0.0_wp) .or. any(abs(frame%node%load_y) > 0.0_wp) .or. &
+      loaded = any(frame%floor%is_loaded()) .or. any(abs(frame%node%load_y) > 0.0_wp) .or. &
                any(abs(frame%member%load) > 0.0_wp)
       if (heavy .and. .not. loaded) then
          call notes%add('frame: it has mass and no dead load; the weight of masses acts as far as it is '// &

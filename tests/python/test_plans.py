@@ -9,7 +9,7 @@ from test_building import MORE, B, C
 
 import rbsdem
 from rbsdem.errors import AccuracyWarning
-from rbsdem.frames import Frame, FrameMember, FrameNode, Member
+from rbsdem.frames import Frame, FrameMember, FrameNode, Member, TeeSection
 from rbsdem.run.case import case_of_text
 from rbsdem.springs import Bilinear, Elastic, Layered
 
@@ -66,6 +66,12 @@ def test_an_eccentric_storey_yields_as_by_hand():
     # The softer frame, at y = 5, moves on: clockwise.
     assert last.floor_rotation[-1, 0] == pytest.approx(-2.9297e-4, abs=5e-9)
     assert [event.member for event in push.events] == ["x-2:spring"]
+    # Drifts at the centre, and of the corners (+-8, +-5) by hand
+    u, turned = last.floor_x[-1, 0], last.floor_rotation[-1, 0]
+    assert last.storey_drift_x[-1] == pytest.approx([u / 3.0], rel=1e-12)
+    assert last.storey_drift_y[-1] == pytest.approx([0.0], abs=1e-12)
+    furthest = np.hypot(u - 5.0 * turned, 8.0 * turned) / 3.0
+    assert last.corner_drift[-1] == pytest.approx([furthest], rel=1e-12)
     # Equilibrium with the load at the centre of mass
     assert push.base_shear_x == pytest.approx(push.force, rel=1e-9)
     assert push.base_torque == pytest.approx(0.0 * push.force, abs=1e-6)
@@ -233,7 +239,6 @@ REFUSED = [
     (lambda f: rbsdem.Building([(f, 0.0, 3.0)]), "floor 1: the planes leave it free to turn"),
     (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
     (lambda f: rbsdem.Building([]), "it has no frames"),
-    (lambda f: rbsdem.Building.grid([3.0], [5.0]), "there is no grid in plan yet"),
     (lambda f: rbsdem.Building([(f, 0.0)]), "must be a tuple"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a:b"]), "is no name of a frame"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a", "b"]), "2 names for 1 frames"),
@@ -259,6 +264,137 @@ REFUSED = [
 def test_refusals_name_the_fault(made, told):
     with pytest.raises(rbsdem.InputError, match=told):
         made(line(Elastic(1e7), mass=1e3, load=1e4))
+
+
+ELASTIC = FrameMember(3e10, 0.16, 2e-3)
+
+
+def plan(bays_x=(6.0, 4.0), bays_y=(4.0, 5.0), **more):
+    given = {"columns": ELASTIC, "beams_x": ELASTIC, "beams_y": ELASTIC} | more
+    return rbsdem.Building.grid([3.0, 3.0], bays_x, bays_y, **given)
+
+
+def loads_of(building, line):
+    return np.broadcast_to(building.plane(line).frame.beam_load[0], 2)
+
+
+def test_loads_go_to_the_beams_by_yield_lines():
+    building = plan(floor_load=[6e3, 4e3], live_load=[2e3, 0.0], mass="from_loads")
+    q = 6e3 + 0.3 * 2e3
+    # Panels of 6 x 4 and 6 x 5 m beside the middle line along x: trapezoids of 8 and 8.75 m2;
+    # of 4 x 4 and 4 x 5 m beside the last one along y: triangles of 4 m2, then a trapezoid of 6.
+    assert loads_of(building, "x-2") * [6.0, 4.0] == pytest.approx([q * 16.75, q * 8.0])
+    assert loads_of(building, "y-3") * [4.0, 5.0] == pytest.approx([q * 4.0, q * 6.0])
+    # All of it stands on the ground, and the mass is where it is.
+    parts = building.parts
+    feet = [name in {*building.axial_of.values()} and name.endswith("-1") for name in parts.members]
+    assert parts.compression[feet].sum() == pytest.approx(90.0 * (q + 4e3), rel=1e-12)
+    assert building.plan_mass == pytest.approx(90.0 * np.array([q, 4e3]) / 9.80665, rel=1e-12)
+    assert building.centres == pytest.approx(np.tile([5.0, 4.5], (2, 1)), rel=1e-12)
+    assert building.inertia == pytest.approx(building.plan_mass * (100.0 + 81.0) / 12.0, rel=1e-12)
+    # Facades are lines, and accidental eccentricity a part of the length.
+    facade = plan(edge_load=1e3, mass="from_loads", eccentricity=(0.05, -0.1))
+    assert facade.plan_mass == pytest.approx(np.full(2, 38e3 / 9.80665), rel=1e-12)
+    assert facade.centres[0] == pytest.approx([5.5, 3.6], rel=1e-12)
+    lines = 20.0 * (100.0 / 12.0 + 81.0 / 4.0) + 18.0 * (81.0 / 12.0 + 100.0 / 4.0)
+    assert facade.inertia[0] == pytest.approx(1e3 / 9.80665 * lines, rel=1e-12)
+
+
+def test_a_side_without_a_beam_leaves_its_load_to_the_others():
+    without = {"beams_x": {(0, 0, 0): ELASTIC, (1, 1, 0): None}}
+    building = plan(floor_load=6e3, mass="from_loads", **without)
+    # Of the panel of 6 x 4 m sides of 4, 8 and 4 m2 are left.
+    assert loads_of(building, "x-2")[0] * 6.0 == pytest.approx(6e3 * (12.0 + 8.75))
+    assert building.plan_mass[0] == pytest.approx(6e3 * 90.0 / 9.80665)
+
+
+def test_a_grid_is_its_frames_one_by_one():
+    column, beam = FrameMember(3.5e5, 4.0, 1.25), FrameMember(5e5, 1.0, 2.61)
+    drawn = rbsdem.Building.grid(
+        [13.0] * 2, [35.0] * 2, [25.0] * 2, columns=column, beams_x=beam, beams_y=beam,
+        floor_mass=6.21118, eccentricity=(3.0 / 70.0, 2.0 / 50.0),
+    )  # fmt: skip
+    assert drawn.inertia == pytest.approx(np.full(2, 6.21118 * 7400.0 / 12.0))
+    one, two = rbsdem.modes(drawn.changed(inertia=0.0), 4), rbsdem.modes(peterson(), 4)
+    np.testing.assert_allclose(one.period, two.period, rtol=1e-12)
+
+
+def test_a_drawn_building_and_its_case_file_are_one(tmp_path):
+    oblong = replace(C, depth=0.5)
+    wall = rbsdem.WallSection(
+        1.8, 0.2, concrete=C.concrete, cover=0.02,
+        vertical=rbsdem.Curtain(0.01, 0.2, C.bars[0][2]),
+        horizontal=rbsdem.Curtain(0.01, 0.2, C.bars[0][2]),
+    )  # fmt: skip
+    house = rbsdem.Building.grid(
+        [3.2], [5.6, 4.0], [5.0], columns={(0, 0, 0): C, (1, 1, 0): oblong}, beams_x=B, beams_y=B,
+        walls={("x", 2, 3): wall}, floor_load=6e3, edge_load=2e3, self_weight=True,
+        mass="from_loads", kinematics="pdelta", direction=20.0, damping=0.05,
+    )  # fmt: skip
+    # The wall bends along x, and across it is a post; sections turn with their planes.
+    assert house.frame_of("x-2").kinds["C-3-1"].sections == (wall, wall)
+    assert house.frame_of("y-3").kinds["C-2-1"].ends == "pinned"
+    assert house.frame_of("y-1").kinds["C-1-1"].sections[0] == oblong.turned
+    assert oblong.turned.depth == C.width
+    assert oblong.turned.turned == oblong
+    sizes = 4 * 0.4 * 0.4 + 0.4 * 0.5 + 1.8 * 0.2
+    beams = 0.5 * 0.3 * (2 * 9.6 + 3 * 5.0)
+    weights = 6e3 * 48.0 + 2e3 * 29.2 + 25e3 * (beams + 0.5 * 3.2 * sizes)
+    assert house.plan_mass[0] * 9.80665 == pytest.approx(weights, rel=1e-12)
+    case = case_of_text(house.to_namelist() + "&loading drive = 'displacement', values = 0.01 /\n")
+    assert case.column == house
+    assert case.column.plan == house.plan
+    push = case.run()
+    again = rbsdem.cyclic(house, displacement=[0.01])
+    for name, values in push.channels.items():
+        np.testing.assert_array_equal(again.channels[name], values, err_msg=name)
+    push.save(tmp_path / "push.npz")
+    assert rbsdem.read_result(tmp_path / "push.npz").building.plan == house.plan
+
+
+TEE = TeeSection(0.3, 0.5, C.concrete, flange_width=0.9, flange_thickness=0.1)
+GRIDS = [
+    ({"walls": {("x", 9, 1): None}}, "line"),
+    ({"walls": {(1, 1): None}}, "must be .direction, line, place."),
+    ({"eccentricity": (5.0, 5.0)}, "5 per cent is 0.05"),
+    ({"columns": {(4, 1, 0): ELASTIC}}, "columns: line_x = 4, but the building has 3"),
+    ({"beams_x": {(1, 1): ELASTIC}}, "must be three numbers"),
+    ({"floor_load": [1e3] * 3}, "one for each of 2 floors"),
+    ({"bays_x": (-1.0,)}, "must be lengths above 0"),
+    ({"beams_x": None, "beams_y": None, "floor_load": 6e3}, "no beam around it"),
+    ({"mass": "from_loads", "floor_mass": 1e4}, "give one of them"),
+    ({"columns": TEE},
+     "frame y-1|has no other side"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changed", "told"), GRIDS)
+def test_a_grid_names_what_is_wrong(changed, told):
+    with pytest.raises(rbsdem.InputError, match=told):
+        plan(**changed)
+
+
+def test_a_load_in_kn_is_told():
+    with pytest.warns(AccuracyWarning, match="no building; 6 kN/m2 is 6e3"):
+        plan(floor_load=6.0)
+
+
+CASES = [
+    ("&beam_of kind = 'a' /", "beam_of: along is missing"),
+    ("&column_of line = 1, kind = 'a' /", "line is of a planar frame"),
+    ("&column_of kind = 'b' /", "kind = 'b' is not known"),
+]
+
+
+@pytest.mark.parametrize(("groups", "told"), CASES)
+def test_a_case_of_a_grid_names_what_is_wrong(groups, told):
+    text = "&frame storeys = 3.0, bays_x = 4.0, bays_y = 4.0 /\n"
+    text += "&member_kind name = 'a', modulus = 3e10, area = 0.16, inertia = 2e-3 /\n"
+    with pytest.raises(rbsdem.InputError, match=told):
+        case_of_text(text + groups)
+    text = text.replace("bays_x = 4.0, bays_y", "bays")
+    with pytest.raises(rbsdem.InputError, match="of a grid in plan"):
+        case_of_text(text + "&column_of line_x = 1, kind = 'a' /\n&beam_of kind = 'a' /\n")
 
 
 def test_columns_at_one_place_are_alike(grid):

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from itertools import count
+from itertools import count, product
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -500,32 +500,31 @@ class Span(NamedTuple):
     columns: tuple[int, ...]
 
 
-def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
-    """Return the places of a grid that a pair names: line or bay, and storey or floor, 0 for all.
+def places_of(pair: Any, name: str, *lines: int) -> list[Any]:
+    """Return the places of a grid that a key names: line or bay, and storey or floor, 0 for all.
 
     Parameters
     ----------
     pair : tuple
-        Numbers or tuples of numbers; the first may be "outer" or "inner".
+        Numbers or tuples of numbers; all but the last may be "outer" or "inner".
     name : str
         Of the argument, for messages.
     lines : int
-        Number of lines or bays.
+        Number of lines or bays; of a grid in plan there are two.
     """
-    if not (isinstance(pair, tuple) and len(pair) == 2):
-        raise InputError(
-            f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
-        )
+    if not (isinstance(pair, tuple) and len(pair) == len(lines) + 1):
+        what = "a pair (line or bay, storey)" if len(lines) == 1 else "three numbers"
+        raise InputError(f"frame: {name}: {_arguments.shown(pair)} must be {what}")
     numbers = []
-    for word, words in zip(pair, (_SIDES, ()), strict=True):
+    for word, most in zip(pair, (*lines, 0), strict=True):
         if isinstance(word, str):
-            if word not in words:
+            if word not in (_SIDES if most else ()):
                 raise InputError(
                     f"frame: {name}: {word!r} is not known; a pair has numbers, 0 for all, tuples "
                     'of numbers, and for lines and bays "outer" or "inner"'
                 )
-            outer = list(dict.fromkeys((1, lines)))
-            numbers.append(outer if word == "outer" else list(range(2, lines)))
+            outer = list(dict.fromkeys((1, most)))
+            numbers.append(outer if word == "outer" else list(range(2, most)))
         else:
             several = word if isinstance(word, (tuple, range)) else (word,)
             numbers.append(
@@ -534,7 +533,7 @@ def places_of(pair: Any, name: str, lines: int) -> list[tuple[int, int]]:
                     for number in several
                 ]
             )
-    return [(at, storey) for storey in numbers[1] for at in numbers[0]]
+    return [place[::-1] for place in product(*numbers[::-1])]
 
 
 def rules_of(
@@ -571,16 +570,20 @@ def rules_of(
     return found
 
 
-def at_place(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
+def at_place(cells: Mapping[Any, Any], *place: int) -> Any:
     """Return what stands in a place of a grid: the last cell that fits, None without one."""
-    kinds = [kind for (at, level), kind in cells.items() if at in (0, i) and level in (0, k)]
+    kinds = [
+        kind
+        for key, kind in cells.items()
+        if all(at in (0, i) for at, i in zip(key, place, strict=True))
+    ]
     return kinds[-1] if kinds else None
 
 
 def cells_of(
-    drawn: Any, name: str, kind: type, lines: int, *, halves: type | None = None
-) -> dict[tuple[int, int], Any]:
-    """Return the cells of a grid by pairs of line or bay and storey, 0 for all, in their order.
+    drawn: Any, name: str, kind: type, *lines: int, halves: type | None = None
+) -> dict[Any, Any]:
+    """Return the cells of a grid by line or bay and storey, 0 for all, in their order.
 
     A cell is of a kind; or of that of `halves`, or a tuple of two of these.
     """
@@ -588,18 +591,19 @@ def cells_of(
     kinds = f"{article} {kind.__name__}"
     if halves is not None:
         kinds = f"a {halves.__name__}, a pair of them, {kinds}"
-    items = drawn.items() if isinstance(drawn, Mapping) else [((0, 0), drawn)]
-    by_place: dict[tuple[int, int], Any] = {}
+    items = drawn.items() if isinstance(drawn, Mapping) else [((0,) * (len(lines) + 1), drawn)]
+    by_place: dict[Any, Any] = {}
     for pair, cell in () if drawn is None else items:
-        places = places_of(pair, name, lines)
+        places = places_of(pair, name, *lines)
         paired = halves is not None and isinstance(cell, (tuple, list)) and len(cell) == 2
         parts = tuple(cell) if paired else (cell,)
         if cell is not None and not (
             isinstance(cell, kind) or (halves and all(isinstance(part, halves) for part in parts))
         ):
+            pairs = "pairs (line or bay, storey)" if len(lines) == 1 else "three numbers"
             raise InputError(
                 f"frame: {name} = {_arguments.shown(cell)} must be {kinds}, or a mapping from "
-                "pairs (line or bay, storey), 0 for all, to these"
+                f"{pairs}, 0 for all, to these"
             )
         for place in places:
             by_place.pop(place, None)

@@ -353,6 +353,14 @@ class Section(_Fields, ABC):
         """Return the rows of bars upside down."""
         return {}
 
+    @property
+    def turned(self) -> Section:
+        """The section as it is loaded along its width. Itself where that is the same."""
+        raise InputError(
+            f"section: a {self.shape} has no other side to be loaded along; give a rectangle or a "
+            "circle, or the frames of the two planes one by one"
+        )
+
     @cached_property
     def symmetric(self) -> bool:
         """Whether the section is the same upside down."""
@@ -556,6 +564,38 @@ class RectangularSection(Section):
 
     def _rows_turned(self) -> dict[str, Any]:
         return {"top": self.bottom, "bottom": self.top}
+
+    @cached_property
+    def turned(self) -> Section:
+        """The section as it is loaded along its width. Itself where that is the same."""
+        if not self.shape.endswith("rectangle"):
+            return super().turned
+        other: dict[str, Any] = {
+            "width": self.depth, "depth": self.width, "cover": self.side_cover,
+            "side_cover": self.cover, "wall": self.side_wall, "side_wall": self.wall,
+        }  # fmt: skip
+        if self.ties is not None:
+            across: Any = self.ties.legs_across
+            other["ties"] = replace(self.ties, legs=across, legs_across=self.ties.legs)
+        layouts = {"layout": self.layout, "inner_layout": self.inner_layout}
+        for name, own in layouts.items():
+            if own is not None and own.face is not None:
+                other[name] = replace(own, face=own.number // 2 + 2 - own.face)
+        if self.layout is None and self.bars:
+            single = 0.25 * math.pi * float(self.bar_diameter or 0.0) ** 2
+            steels = [
+                steel
+                for _, area, steel in self.bars
+                for _ in range(1 if self.laid_out else max(1, round(area / single)))
+            ]
+            other["bars"] = [
+                (x, 0.25 * math.pi * d**2, steel)
+                for (x, _, d), steel in zip(self.place_bars(self.single_bars), steels, strict=True)
+            ]
+            other |= {"top": (), "bottom": (), "side": None, "steel": None}
+            other["bar_diameter"] = float(self.bar_diameter or 0.0)
+        made = replace(self, **other)
+        return self if made == self else made
 
     def _check_rows(self) -> None:
         """Refuse rows without a steel, a steel without rows, and rows wider than the section."""
@@ -889,6 +929,11 @@ class CircularSection(Section):
     def side_cover(self) -> float:
         """The cover [m]."""
         return self.cover
+
+    @property
+    def turned(self) -> Section:
+        """The section as it is loaded along its width, which is the same."""
+        return self
 
     @property
     def ties(self) -> Spiral | None:

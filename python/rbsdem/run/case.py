@@ -23,6 +23,7 @@ from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.groups import (
+    building_in_plan,
     building_of,
     drawing_of,
     drawn_column,
@@ -240,7 +241,10 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
     if "frame" in groups:
-        frame = building_of(groups) if "plane" in groups else frame_of(groups, drawings)
+        if "bays_x" in groups["frame"][-1]:
+            frame: Frame = building_in_plan(groups, drawings)
+        else:
+            frame = building_of(groups) if "plane" in groups else frame_of(groups, drawings)
         return _case_of(frame, found, settings, time, values, acting, more)
     column = _core.typed("column", found["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))

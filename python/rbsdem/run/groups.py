@@ -335,6 +335,70 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
     )  # fmt: skip
 
 
+def building_in_plan(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
+    """Return the building of the groups of a case that has a grid in plan.
+
+    Raises
+    ------
+    InputError
+        If a place or a kind is not of the grid, or the members cannot be made.
+    """
+    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
+    kinds |= {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
+    infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
+    frame = _core.typed("frame", groups["frame"][-1])
+    for name in ("storeys", "bays_y"):
+        if name not in frame:
+            raise InputError(f"frame: {name} is missing beside bays_x; give it")
+    made = _cells_in_plan(groups, kinds, infills)
+    storeys = len(frame["storeys"])
+    for key, name in (
+        ("floor_load", "floor_load"), ("live_load", "live_floor_load"), ("edge_load", "edge_load")
+    ):  # fmt: skip
+        made[key] = _by_floor(name, storeys, groups)
+    masses = _by_floor("mass", storeys, groups)
+    made["floor_mass"] = masses if any(masses) else None
+    made["eccentricity"] = [frame.pop(f"eccentricity_{along}", 0.0) for along in "xy"]
+    if "panel_hoops" in frame:
+        hoops = kinds.get(frame["panel_hoops"])
+        frame["panel_hoops"] = getattr(hoops, "ties", frame["panel_hoops"])
+    if damping := groups.get("damping"):
+        made["damping"] = Damping(**_core.typed("damping", damping[-1]))
+    return Building.grid(**made, **frame)
+
+
+def _cells_in_plan(
+    groups: Groups, kinds: Mapping[str, Any], infills: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return columns, beams, infills and walls of a grid in plan, by the names of arguments."""
+    made: dict[str, Any] = {"columns": {}, "walls": {}}
+    made |= {f"{name}_{along}": {} for name in ("beams", "infills") for along in "xy"}
+    for group, name in (("column_of", "columns"), ("beam_of", "beams"), ("infill_of", "infills")):
+        known = infills if name == "infills" else kinds
+        for given in groups.get(group, []):
+            words = {given["kind"], given.get("kind_to", "none")} - {"none"}
+            if unknown := sorted(words - known.keys()):
+                raise InputError(f"{group}: kind = {unknown[0]!r} is not known; give its group")
+            if planar := sorted({"line", "lines", "bays"} & given.keys()):
+                raise InputError(
+                    f"{group}: {planar[0]} is of a planar frame; a grid in plan has line_x and "
+                    "line_y, or along, bay and of_line"
+                )
+            cell, along, k = _cell(given, known), given.get("along"), int(given.get("storey", 0))
+            pair = ("line_x", "line_y") if name == "columns" else ("bay", "of_line")
+            i, j = (int(given.get(key, 0)) for key in pair)
+            if name == "columns" and along is None:
+                made[name][i, j, k] = cell
+            elif name == "columns":
+                key = (along, j, i) if along == "x" else (along, i, j)
+                made["walls"].setdefault(key, []).append(cell)
+            elif along is None:
+                raise InputError(f"{group}: along is missing; it is 'x' or 'y' in a grid in plan")
+            else:
+                made[f"{name}_{along}"][i, j, k] = cell
+    return made
+
+
 def building_of(groups: Groups) -> Building:
     """Return the building of the groups of a case, whose frames have the nodes of its planes."""
     kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
@@ -471,15 +535,7 @@ def _cells(
     """Return kinds, or sections of drawings, by their places."""
     found: dict[tuple[int, int], Any] = {}
     for given in groups.get(group, []):
-        cell = None if given["kind"] == "none" else kinds[given["kind"]]
-        if isinstance(cell, Section):
-            other = given.get("kind_to")
-            cell = cell if other is None else (cell, kinds[other])
-        elif isinstance(cell, FrameMember):
-            rigid_end = given.get("rigid_end", 0.0)
-            if "rigid_from" in given or "rigid_to" in given:
-                rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
-            cell = with_rigid_end(cell, rigid_end)
+        cell = _cell(given, kinds)
         for place in places_of(_pair(given, key, "storey"), group, lines):
             # The last that fits counts.
             found.pop(place, None)
@@ -487,12 +543,27 @@ def _cells(
     return found
 
 
-def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:
-    values = [0.0] * storeys
+def _cell(given: Mapping[str, Any], kinds: Mapping[str, Any]) -> Any:
+    """Return what stands in a place: a kind, the sections of drawings, an infill, or None."""
+    cell = None if given["kind"] == "none" else kinds[given["kind"]]
+    if isinstance(cell, Section):
+        other = given.get("kind_to")
+        return cell if other is None else (cell, kinds[other])
+    if isinstance(cell, FrameMember):
+        rigid_end = given.get("rigid_end", 0.0)
+        if "rigid_from" in given or "rigid_to" in given:
+            rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
+        return with_rigid_end(cell, rigid_end)
+    return cell
+
+
+def _by_floor(name: str, storeys: int, groups: Groups) -> list[Any]:
+    values: list[Any] = [0.0] * storeys
     for given in groups.get("floor", []):
         for i in range(storeys):
             if given.get("floor", 0) in (0, i + 1):
-                values[i] = given.get(name, 0.0)
+                several = tuple(_core.several(given.get(name, 0.0)))
+                values[i] = several if len(several) > 1 else several[0]
     return values[:1] if len(set(values)) == 1 else values
 
 

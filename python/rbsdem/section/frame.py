@@ -29,6 +29,7 @@ from rbsdem.model.frame import (
     groups_of_kinds,
     index_of,
     names_of,
+    rules_of,
     stated,
     with_rigid_end,
 )
@@ -44,6 +45,8 @@ from rbsdem.section.grid import (
     halves_of,
     infill_groups,
     is_drawn,
+    loads_by_floor,
+    loads_of_beams,
     loads_of_nodes,
     spans_of_walls,
 )
@@ -78,8 +81,8 @@ class Frame:
     floor_mass : float or sequence of float, optional
         Mass of each floor, shared by its nodes as the widths beside them [kg]. Its weight acts as
         far as it is given as a load.
-    beam_load : float or sequence of float, optional
-        Dead load on the beams of each floor, downward [N/m].
+    beam_load : float or sequence, optional
+        Dead load on the beams of each floor, or in it of each bay, downward [N/m].
     kinematics : {"small", "pdelta"}, optional
         Small rotations, or the same with the second-order work of the axial forces under the dead
         load, which do not change along a path.
@@ -158,17 +161,13 @@ class Frame:
             if getattr(self, name) is not None:
                 given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
                 _arguments.put(self, **{name: tuple(given.tolist())})
+        storeys, bays = len(self.storeys or ()), len(self.bays or ())  # type: ignore[arg-type]
         for name in ("floor_mass", "beam_load"):
-            given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
-            if given.size not in (1, len(self.storeys or ())):  # type: ignore[arg-type]
-                raise InputError(
-                    f"frame: {name} has {given.size} values for "
-                    f"{len(self.storeys or ())} storeys; give one, or one for each"  # type: ignore[arg-type]
-                )
-            # Floors that are alike are stated once, as a case file has them.
-            _arguments.put(
-                self, **{name: tuple(given.tolist() if np.ptp(given) else given[:1].tolist())}
+            given = loads_of_beams(
+                getattr(self, name), name, storeys, bays if name == "beam_load" else 1
             )
+            # Floors that are alike are stated once, as a case file has them.
+            _arguments.put(self, **{name: loads_by_floor(given)})
         for name in ("columns", "beams"):
             lines = len(self.bays or ()) + (name == "columns")  # type: ignore[arg-type]
             cells = cells_of(getattr(self, name), name, FrameMember, lines)
@@ -480,7 +479,8 @@ class Frame:
         place, loads = self.places[member], self.beam_load
         if place.kind == "column":
             return 0.0
-        return float(loads[min(place.storey, len(loads)) - 1])  # type: ignore[arg-type, index]
+        of_floor = np.atleast_1d(loads[min(place.storey, len(loads)) - 1])  # type: ignore[arg-type, index]
+        return float(of_floor[min(place.line, of_floor.size) - 1])
 
     def _state(
         self,
@@ -560,6 +560,7 @@ class Frame:
         infills: Infill | Mapping[tuple[int, int], Infill | None] | None = None,
         walls: Mapping[int, WallSection | Sequence[WallSection]] | None = None,
         wall_spans: ArrayLike | Mapping[int, float] | None = None,
+        axial_loads: Mapping[str, float] | None = None,
         **more: Any,
     ) -> Self:
         """Return a frame of storeys and bays, from kinds of members or from their sections.
@@ -584,7 +585,8 @@ class Frame:
             Springs in the panels of the nodes (`rbsdem.frames.JointPanel`) with these hoops, or
             without hoops; None: the nodes are rigid.
         dead_load, live_load : float or sequence of float, optional
-            On the beams of all floors, or of each [N/m].
+            On the beams of all floors, or of each [N/m]; of dead load a floor may have one for each
+            bay.
         live_share : float, optional
             Part of the live load that acts.
         node_load : float or mapping, optional
@@ -606,6 +608,9 @@ class Frame:
         infills : Infill or mapping, optional
             Masonry between columns and beams: one for all bays and storeys, or by (bay, storey), 0
             for all, where the last that fits counts; None: there is none.
+        axial_loads : mapping, optional
+            Axial loads under which columns stand, by name, in place of those of the frame alone, as
+            of columns that carry beams of another frame [N].
         **more
             Other parameters of `Frame`; `beam_load` adds to the loads above.
 
@@ -628,16 +633,19 @@ class Frame:
         given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
         for node in given:
             _arguments.instance(node, "frame: nodes", FrameNode)
-        dead = np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load"))
+        dead = grid.floors(more.pop("beam_load", 0.0), "beam_load")
         dead = dead + grid.floors(dead_load, "dead_load")
+        live = grid.floors(live_load, "live_load")
+        if live.shape[1] > 1:
+            raise InputError("frame: live_load is one for each floor; give bays to dead_load")
         drawing = FrameDrawing(
             grid.given[0],
             grid.given[1],
             ends if ends is not None else "asce" if panel_hoops is None else 1.0,
             panel_hoops,
             cells_of(infills, "infills", Infill, lines - 1),
-            tuple(dead.tolist()),
-            grid.floors(live_load, "live_load"),
+            tuple(row[0] if len(set(row)) == 1 else tuple(row) for row in dead.tolist()),
+            tuple(live[:, 0].tolist()),
             _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0),
             loads_of_nodes(node_load, lines),
             _arguments.boolean(self_weight, "frame: self_weight"),
@@ -654,7 +662,7 @@ class Frame:
             cells = drawing.columns, drawing.beams or None
             return cls(heights, widths or None, *cells, **more)
         with each_told_once():
-            members = grid.members(cls, drawing, more)
+            members = grid.members(cls, drawing, more, axial_loads)
         if NOTES_ON.get():
             grid.note_on_sections()
             grid.note_on_bars(more["beam_load"])
@@ -666,7 +674,9 @@ class Frame:
         struts = [strut for one in grid.infilled(drawing.infills) for strut in one.members()]
         more["members"] = (*drawing.members, *struts)
         frame = cls(heights, widths or None, members[0], members[1] or None, **more)
-        _arguments.put(frame, drawing=replace(drawing, made=frame._statement))
+        # Under axial loads of another frame its sections alone do not say what it is.
+        made = frame._statement if axial_loads is None else None
+        _arguments.put(frame, drawing=replace(drawing, made=made))
         return frame
 
     @cached_property
@@ -706,23 +716,9 @@ class Frame:
             # Not drawn, or changed since, as by `without`.
             return self._statement
         cells = drawing.columns, drawing.beams
-        drawings: dict[Section, str] = {}
-        taken = {one.name for own in cells for one in own.values() if isinstance(one, FrameMember)}
-
-        def name_of(section: Section) -> _core.Text:
-            names = (f"section-{i}" for i in count(1))
-            free = (name for name in names if name not in {*taken, *drawings.values()})
-            return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))
-
-        drawn: dict[Any, dict[str, Any]] = {}
-        for one in [one for own in cells for one in own.values() if is_drawn(one)]:
-            start, end = halves_of(one)
-            drawn[one] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
-        hoops: Any = drawing.panel_hoops
-        if isinstance(hoops, Ties):
-            # A drawing with these hoops; no member may be of it.
-            like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
-            hoops = name_of(next((one for one in drawings if one.ties == hoops), like))
+        drawn, sections, hoops = drawings_of(
+            [one for own in cells for one in own.values()], drawing.panel_hoops
+        )
         more = {
             "panel_hoops": hoops,
             "ends": drawing.ends if drawing.ends != "asce" else None,
@@ -732,11 +728,46 @@ class Frame:
             "wall_spans": drawing.wall_spans or None,
         }
         statement = self._state(cells, drawn, drawing, **more)
-        statement += infill_groups(drawing.infills, len(self.bays or ()))  # type: ignore[arg-type]
-        for section, name in drawings.items():
-            about = {"name": _core.Text(name), "version": _core.Text(VERSION)}
-            statement += _core.group("drawing", about) + section.drawing()
-        return statement
+        bays = len(self.bays or ())  # type: ignore[arg-type]
+        infills = rules_of(drawing.infills, "bay", "storey", bays)
+        return statement + infill_groups(infills) + sections
+
+
+def drawings_of(
+    cells: Sequence[Any], hoops: Ties | Literal["none"] | None
+) -> tuple[dict[Any, dict[str, Any]], _core.Statement, Any]:
+    """Return the keys of the cells that are drawn, the groups of their sections, and of hoops.
+
+    Parameters
+    ----------
+    cells : sequence
+        What stands in the places of a grid.
+    hoops : Ties, "none" or None
+        Those in the panels of nodes.
+    """
+    drawings: dict[Section, str] = {}
+    taken = {one.name for one in cells if isinstance(one, FrameMember)}
+
+    def name_of(section: Section) -> _core.Text:
+        names = (f"section-{i}" for i in count(1))
+        free = (name for name in names if name not in {*taken, *drawings.values()})
+        return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))
+
+    drawn: dict[Any, dict[str, Any]] = {}
+    for one in filter(is_drawn, cells):
+        start, end = halves_of(one)
+        drawn[one] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
+    named: Any = hoops
+    if isinstance(hoops, Ties):
+        # A drawing with these hoops; no member may be of it.
+        like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
+        named = name_of(next((one for one in drawings if one.ties == hoops), like))
+    groups = [
+        _core.group("drawing", {"name": _core.Text(name), "version": _core.Text(VERSION)})
+        + section.drawing()
+        for section, name in drawings.items()
+    ]
+    return drawn, _core.joined(groups), named
 
 
 def _spring_of(text: str, position: float, stiffness: float) -> FrameSpring:

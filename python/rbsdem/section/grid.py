@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import count
@@ -70,7 +70,7 @@ class FrameDrawing:
     infills : dict
         Infill, or None, by (bay, storey), 0 for all.
     dead_load, live_load : tuple of float
-        On the beams of each floor [N/m].
+        On the beams of each floor [N/m]; of dead load tuples where bays differ.
     live_share : float
         Part of the live load that acts.
     node_load : dict
@@ -94,7 +94,7 @@ class FrameDrawing:
     ends: float | Literal["asce"] = "asce"
     panel_hoops: Ties | Literal["none"] | None = None
     infills: dict[tuple[int, int], Any] = field(default_factory=dict)
-    dead_load: tuple[float, ...] = (0.0,)
+    dead_load: tuple[Any, ...] = (0.0,)
     live_load: tuple[float, ...] = (0.0,)
     live_share: float = 0.3
     node_load: dict[tuple[int, int], float] = field(default_factory=dict)
@@ -127,9 +127,9 @@ class FrameDrawing:
             yield "node_load", place | {"load": load}
 
 
-def infill_groups(cells: Mapping[tuple[int, int], Infill | None], bays: int) -> _core.Statement:
-    """Return the groups of infills and of their places."""
-    infills = list(dict.fromkeys(one for one in cells.values() if one is not None))
+def infill_groups(places: Sequence[tuple[dict[str, Any], Infill | None]]) -> _core.Statement:
+    """Return the groups of infills and of their places, given by their keys."""
+    infills = list(dict.fromkeys(one for _, one in places if one is not None))
     taken = {one.name for one in infills}
     free = (name for name in (f"infill-{i}" for i in count(1)) if name not in taken)
     names: dict[Infill | None, str] = {one: one.name or next(free) for one in infills}
@@ -139,7 +139,7 @@ def infill_groups(cells: Mapping[tuple[int, int], Infill | None], bays: int) -> 
         given = {name: getattr(one, name) for name in ("thickness", "fm", "strength", "peak_drift")}
         given |= {"opening_length": length, "opening_height": height}
         parts.append(("infill", {"name": _core.Text(names[one])} | given))
-    for place, cell in rules_of(cells, "bay", "storey", bays):
+    for place, cell in places:
         kind = _core.Text(names.get(cell, "none"))
         parts.append(("infill_of", place | {"kind": kind}))
     return _core.joined(parts)
@@ -213,6 +213,33 @@ def loads_of_nodes(given: Any, lines: int) -> dict[tuple[int, int], float]:
     return found
 
 
+def loads_of_beams(given: Any, name: str, storeys: int, bays: int) -> Array:
+    """Return loads of beams: one, one for each floor, or tuples of each bay where these differ.
+
+    Returns
+    -------
+    ndarray, shape (storeys, bays) or (storeys, 1)
+        The loads [N/m].
+    """
+    rows = given if isinstance(given, (list, tuple)) or np.ndim(given) > 0 else [given]
+    named = f"frame: {name}"
+    each = [_arguments.vector(one, named, shape="1 or m") for one in rows]
+    if len(each) not in (1, storeys) or any(one.size not in (1, bays) for one in each):
+        raise InputError(
+            f"frame: {name} has {len(each)} values for {storeys} storeys; give one, or one for each"
+            + ("" if all(one.size == 1 for one in each) else f", and in it one for {bays} bays")
+        )
+    width = max((one.size for one in each), default=1)
+    table = np.array([np.broadcast_to(one, width) for one in each])
+    return np.array(np.broadcast_to(table, (max(storeys, len(each)), width)))
+
+
+def loads_by_floor(loads: Array) -> tuple[Any, ...]:
+    """Return loads as they are stated: once if floors are alike, once a floor if bays are."""
+    rows = [row[0] if len(set(row)) == 1 else tuple(row) for row in loads.tolist()]
+    return tuple(rows if len(set(rows)) > 1 else rows[:1])
+
+
 def told_of_small(name: str, loads: Any, unit: str, meant: str) -> None:
     """Tell of a load that is none of a building, as one in kN is."""
     small = [load for load in np.ravel(loads).tolist() if 0.0 < abs(load) < _LEAST_LOAD]
@@ -239,7 +266,7 @@ class Grid:
         self.kinds: tuple[dict[Any, FrameMember | None], ...] = ({}, {})
         #: Members of the gross sections, by the identity of what stands in places.
         different = {id(one): one for one in self.all_cells()}
-        self.elastic = {key: _elastic_kind(one) for key, one in different.items()}
+        self.elastic = {key: elastic_kind(one) for key, one in different.items()}
 
     def check_places(self, name: str, cells: Mapping[tuple[int, int], Any], lines: int) -> None:
         """Refuse places that the grid does not have."""
@@ -256,23 +283,18 @@ class Grid:
         """Return what stands in the places where there is a member."""
         return [one for one in (*self.columns.values(), *self.beams.values()) if one is not None]
 
-    def floors(self, given: Any, name: str) -> tuple[float, ...]:
-        """Return a value for each floor."""
-        values = _arguments.vector(given, f"frame: {name}", shape="1 or m")
-        if values.size not in (1, len(self.storeys)):
-            raise InputError(
-                f"frame: {name} has {values.size} values for {len(self.storeys)} storeys; give "
-                "one, or one for each"
-            )
+    def floors(self, given: Any, name: str) -> Array:
+        """Return a value for each floor and bay, shape (storeys, bays), or (storeys, 1)."""
+        values = loads_of_beams(given, name, len(self.storeys), len(self.bays))
         told_of_small(f"frame: {name}", values, "N/m", "10 kN/m is 10e3")
-        return tuple(np.broadcast_to(values, len(self.storeys)).tolist())
+        return values
 
     def loads(self, drawing: FrameDrawing) -> dict[str, Any]:
         """Return loads of beams, loads of nodes and masses of floors, as arguments of a frame."""
-        loads = np.array(drawing.dead_load)
-        loads = loads + drawing.live_share * np.array(drawing.live_load)
+        loads = self.floors(drawing.dead_load, "dead_load")
+        loads = loads + drawing.live_share * np.array(drawing.live_load)[:, None]
         if drawing.self_weight:
-            loads = loads + self.weights_of_beams()
+            loads = loads + self.weights_of_beams()[:, None]
         nodes = {node.name: node for node in drawing.nodes}
         for name, weight in self.weights(drawing.node_load, drawing.self_weight).items():
             node = nodes.get(name)
@@ -281,11 +303,14 @@ class Grid:
                 if node is not None
                 else FrameNode(name, load_y=-weight)
             )
-        floors = loads * sum(self.bays) / STANDARD_GRAVITY
+        floors = loads[:, 0] * sum(self.bays)
+        if np.ptp(loads, axis=1).any():
+            floors = loads @ np.array(self.bays)
+        floors = floors / STANDARD_GRAVITY
         for i, k in self.columns:
             if (loaded := nodes.get(f"N-{i}-{k}")) is not None:
                 floors[k - 1] -= loaded.load_y / STANDARD_GRAVITY
-        more: dict[str, Any] = {"beam_load": loads if len(set(loads.tolist())) > 1 else loads[:1]}
+        more: dict[str, Any] = {"beam_load": loads_by_floor(loads)}
         more |= _masses(drawing.floor_mass, floors, drawing.mass)
         return more | {"nodes": tuple(nodes.values())}
 
@@ -313,7 +338,13 @@ class Grid:
                 found[f"N-{i}-{k}"] = weight
         return found
 
-    def members(self, cls: Any, drawing: FrameDrawing, more: dict[str, Any]) -> list[Any]:
+    def members(
+        self,
+        cls: Any,
+        drawing: FrameDrawing,
+        more: dict[str, Any],
+        axial_loads: Mapping[str, float] | None = None,
+    ) -> list[Any]:
         """Return the kinds of all columns and beams."""
         for name, lengths in (("storeys", self.storeys), ("bays", self.bays)):
             if max(lengths, default=0.0) > _LONGEST:
@@ -321,17 +352,19 @@ class Grid:
                     f"frame: {name} has a length of {max(lengths):g} m, as no building; lengths "
                     "are in m, and 3200 mm is 3.2"
                 )
-        elastic = [
-            {at: self.elastic.get(id(one)) for at, one in cells.items()}
-            for cells in (self.columns, self.beams)
-        ]
-        given = {key: value for key, value in more.items() if key != "losses"}
-        with notes_off():
-            parts = cls(
-                self.storeys, self.bays or None, elastic[0], elastic[1] or None,
-                **given | {"kinematics": "small", "panel": None, "damping": None},
-            ).parts  # fmt: skip
-        axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
+        axial = axial_loads
+        if axial is None:
+            elastic = [
+                {at: self.elastic.get(id(one)) for at, one in cells.items()}
+                for cells in (self.columns, self.beams)
+            ]
+            given = {key: value for key, value in more.items() if key != "losses"}
+            with notes_off():
+                parts = cls(
+                    self.storeys, self.bays or None, elastic[0], elastic[1] or None,
+                    **given | {"kinematics": "small", "panel": None, "damping": None},
+                ).parts  # fmt: skip
+            axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
         load = {
             at: self._rounded(self.columns[at], axial.get(Place("column", *at).name, 0.0))
             for at in self.columns
@@ -342,7 +375,7 @@ class Grid:
             for i in range(1, len(self.bays) + 2)
         }
         columns, beams = self.kinds
-        loads = np.broadcast_to(more["beam_load"], len(self.storeys))
+        loads = self.loads_of_beams(more["beam_load"])
         ends = {
             "columns": {
                 (i, k): (rigid.get((i, k - 1), (0.0, 0.0))[0], rigid[i, k][0])
@@ -359,9 +392,16 @@ class Grid:
             place = self.storeys[k - 1], ends["columns"][i, k], load[i, k], 0.0
             columns[i, k] = _kind(one, *place, Place("column", i, k).name, spans.get((i, k)))
         for (i, k), one in self.beams.items():
-            place = self.bays[i - 1], ends["beams"][i, k], 0.0, float(loads[k - 1])
+            place = self.bays[i - 1], ends["beams"][i, k], 0.0, loads[i, k]
             beams[i, k] = _kind(one, *place, Place("beam", i, k).name)
         return list(self.kinds)
+
+    def loads_of_beams(self, given: Any) -> dict[tuple[int, int], float]:
+        """Return the loads of all beams by bay and storey [N/m]."""
+        storeys, bays = len(self.storeys), len(self.bays)
+        loads = loads_of_beams(given, "beam_load", storeys, bays)
+        each = np.broadcast_to(loads, (storeys, bays)).tolist()
+        return {(i, k): each[k - 1][i - 1] for i, k in self.beams}
 
     def _area(self, one: Any) -> float:
         """Return the area of the mean section of a member; 0 of one by hand [m2]."""
@@ -394,9 +434,9 @@ class Grid:
 
     def note_on_bars(self, beam_load: Any) -> None:
         """Tell of loaded beams with more bars below than above at their ends, which hog."""
-        loads, found = np.broadcast_to(beam_load, len(self.storeys)), []
+        loads, found = self.loads_of_beams(beam_load), []
         for (i, k), one in self.beams.items():
-            if not (is_drawn(one) and loads[k - 1] > 0.0):
+            if not (is_drawn(one) and loads[i, k] > 0.0):
                 continue
             for part in halves_of(one):
                 if part.mirrored.tension_steel > _MORE_BELOW * part.tension_steel:
@@ -624,7 +664,7 @@ def _half_depth(one: Any, other: Any, end: int) -> float:
     return float(rigid[end] if isinstance(rigid, tuple) else rigid)
 
 
-def _elastic_kind(one: Any) -> FrameMember | None:
+def elastic_kind(one: Any) -> FrameMember | None:
     """Return a member of the gross section, for the axial loads."""
     if not is_drawn(one):
         return one  # type: ignore[no-any-return]

@@ -24,13 +24,19 @@ from rbsdem.model.frame import (
     stated,
     with_rigid_end,
 )
+from rbsdem.model.materials import Ties
 from rbsdem.model.springs import Group, placed
 from rbsdem.section.frame import SCOPE_NOTE, Frame
+from rbsdem.section.plan_grid import PlanDrawing
 
 #: Places in plan that are nearer than this are one [m].
 _ONE_PLACE = 1e-3
-#: Columns of two planes are one if their E A differ by less than this share.
-_SAME = 0.02
+#: Columns of two planes are one if their E A differ by less than this share: where joints of layers
+#: close they depend on M/V, which differs from plane to plane.
+_SAME = 0.1
+
+#: Arguments of `Building.grid` that its drawing does not have.
+_NOT_DRAWN = ("cls", "more", "__class__")
 
 #: Scope of the results of a building, printed with them.
 PLAN_NOTE = (
@@ -118,6 +124,8 @@ class Building(Frame):
     control_node : str, optional
         A node whose displacement in its plane is that of the top; by default it is that of the
         centre of the roof along `direction`.
+    plan : PlanDrawing, optional
+        What it was drawn from; `grid` gives it.
 
     Raises
     ------
@@ -135,6 +143,8 @@ class Building(Frame):
     inertia: Array
     rises: dict[str, str]
     axial_of: dict[str, str]
+    #: What it was drawn from; `grid` gives it.
+    plan: PlanDrawing | None
     _given: dict[str, Any]
 
     def __init__(
@@ -151,6 +161,7 @@ class Building(Frame):
         collapse: Literal["storey", "roof"] = "storey",
         damping: Damping | float | None = None,
         control_node: str = "",
+        plan: PlanDrawing | None = None,
     ) -> None:
         planes = _planes(frames, names)
         floors = max(int(one.frame.parts.floor.max(initial=0)) for one in planes)
@@ -162,10 +173,11 @@ class Building(Frame):
         given: dict[str, Any] = {"frames": tuple(frames), "names": names, "centres": centres}
         given |= {"floor_mass": floor_mass, "inertia": inertia, "kinematics": kinematics}
         given |= {"pattern": pattern, "direction": direction, "collapse": collapse}
-        given |= {"damping": damping, "control_node": control_node}
+        given |= {"damping": damping, "control_node": control_node, "plan": plan}
         put = self.__dict__.__setitem__
         put("_given", given)
         put("planes", planes)
+        put("plan", plan)
         put("direction", _arguments.number(direction, "building: direction"))
         put("centres", _by_floor(centres, floors, "centres", 2))
         put("plan_mass", _by_floor(floor_mass, floors, "floor_mass")[:, 0])
@@ -200,12 +212,85 @@ class Building(Frame):
         return _rebuilt, (type(self), self._given)
 
     @classmethod
-    def grid(cls, *_: Any, **__: Any) -> Any:
-        """Refuse a grid in plan: its frames are drawn one by one."""
-        raise InputError(
-            "Building.grid: there is no grid in plan yet; draw each frame by Frame.grid, and give "
-            "Building the frames with angle, arm and along"
-        )
+    def grid(  # type: ignore[override]
+        cls,
+        storeys: ArrayLike,
+        bays_x: ArrayLike,
+        bays_y: ArrayLike,
+        *,
+        columns: Any,
+        beams_x: Any = None,
+        beams_y: Any = None,
+        walls: Mapping[tuple[str, int, int], Any] | None = None,
+        infills_x: Any = None,
+        infills_y: Any = None,
+        floor_load: ArrayLike = 0.0,
+        live_load: ArrayLike = 0.0,
+        live_share: float = 0.3,
+        edge_load: ArrayLike = 0.0,
+        self_weight: bool = False,
+        mass: Literal["from_loads"] | None = None,
+        floor_mass: ArrayLike | None = None,
+        eccentricity: ArrayLike = (0.0, 0.0),
+        ends: float | Literal["asce"] | None = None,
+        panel_hoops: Ties | Literal["none"] | None = None,
+        base: Literal["fixed", "pinned"] = "fixed",
+        **more: Any,
+    ) -> Building:
+        """Return a building of a grid in plan, with a frame on each line: x-1, ..., y-1, ...
+
+        Lines along x are numbered from y = 0, those along y from x = 0; the places of a line are
+        the lines that cross it. Each frame is one of `rbsdem.Frame.grid`; columns of sections stand
+        under the axial load that the elastic building gives them.
+
+        Parameters
+        ----------
+        storeys, bays_x, bays_y : sequence of float
+            Heights, and widths between axes along x and y [m].
+        columns : Section, pair of Section, FrameMember, or mapping
+            One for all, or by (line across x, line across y, storey), with the rules of
+            `rbsdem.Frame.grid`; None: there is no column. The depth of a section is along x; along
+            y it bends as `section.turned`. A `FrameMember` is the same in both planes.
+        beams_x, beams_y : Section, pair of Section, FrameMember, or mapping
+            Beams along x and along y: one for all, or by (bay, line, storey).
+        walls : mapping, optional
+            Walls in place of columns by (direction, line, place): ("x", 2, 1) lies along x on the
+            second line, at its first place. A section for all storeys, or one for each. Across its
+            plane a wall is a post between two pins.
+        infills_x, infills_y : Infill or mapping, optional
+            Masonry below the beams, by (bay, line, storey).
+        floor_load, live_load : float or sequence of float, optional
+            On the panels of all floors, or of each [N/m2]. Yield lines that bisect the corners lead
+            it to the beams, on which the triangle or trapezoid is the equal uniform load; a side
+            without a beam leaves its part to the others.
+        live_share : float, optional
+            Part of the live load that acts.
+        edge_load : float or sequence of float, optional
+            Weight of facades on the beams of the outer lines, of all floors or of each [N/m].
+        self_weight : bool, optional
+            Whether members of sections have their own weight, 25 kN/m3, besides that of the floors.
+        mass : "from_loads", optional
+            Masses of the floors are those of the loads, with their centres and rotary inertia.
+        floor_mass : float or sequence of float, optional
+            Masses of the floors in place of these, spread as the loads, or evenly without loads
+            [kg].
+        eccentricity : pair of float, optional
+            How far the centres of mass are moved along x and y, in parts of the lengths of the
+            building: 0.05 is the accidental eccentricity of EN 1998-1.
+        ends, panel_hoops, base
+            As of `rbsdem.Frame.grid`.
+        **more
+            `kinematics`, `pattern`, `direction`, `collapse`, `damping` and `control_node` of the
+            building.
+
+        Raises
+        ------
+        InputError
+            With what is wrong and where.
+        """
+        given = {name: value for name, value in locals().items() if name not in _NOT_DRAWN}
+        building: Building = PlanDrawing.checked(**given).building(cls, more)
+        return building
 
     def changed(self, **changes: Any) -> Building:
         """Return the building with other parameters in place of some of its own."""
@@ -248,14 +333,8 @@ class Building(Frame):
 
     def _state(self, *cells: Any, **more: Any) -> _core.Statement:
         """Return the groups of a case file."""
-        own: dict[str, Any] = {
-            "kinematics": None if self.kinematics == "small" else self.kinematics,
-            "pattern": None if self.pattern == "triangular" else self.pattern,
-            "collapse": None if self.collapse == "storey" else self.collapse,
-            "control_node": _core.Text(self.control_node) if self.control_node else None,
-            "direction": self.direction or None,
-        }
-        parts: list[_core.Statement | Group] = [("frame", own)]
+        own: dict[str, Any]
+        parts: list[_core.Statement | Group] = [("frame", self._settings())]
         for plane in self.planes:
             own = {"name": _core.Text(plane.name), "angle": plane.angle or None}
             own |= {"arm": plane.arm or None, "along": plane.along}
@@ -284,6 +363,25 @@ class Building(Frame):
             parts.append(self.damping.statement())
         return _core.joined(parts)
 
+    def _settings(self) -> dict[str, Any]:
+        """Return the keys of the building in `&frame`."""
+        return {
+            "kinematics": None if self.kinematics == "small" else self.kinematics,
+            "pattern": None if self.pattern == "triangular" else self.pattern,
+            "collapse": None if self.collapse == "storey" else self.collapse,
+            "control_node": _core.Text(self.control_node) if self.control_node else None,
+            "direction": self.direction or None,
+        }
+
+    def _groups(self) -> _core.Statement:
+        """Return the groups of a case file, with the drawing in place of springs."""
+        if self.plan is None:
+            return self._statement
+        statement = self.plan.groups(self._settings())
+        if isinstance(self.damping, Damping):
+            statement += self.damping.statement()
+        return statement
+
     def with_kinds(self, kinds: Mapping[str, FrameMember]) -> Building:
         """Return the building with other kinds of members in place of some of `named_kinds`."""
         frames = []
@@ -296,7 +394,7 @@ class Building(Frame):
             }
             more = () if plane.along is None else (plane.along,)
             frames.append((plane.frame.with_kinds(own), plane.angle, plane.arm, *more))
-        return self.changed(frames=frames)
+        return self.changed(frames=frames, plan=None)
 
     def without(self, *members: str) -> Building:
         """Return the building after the loss of members: frame:C-line-storey, and so on."""
@@ -309,7 +407,7 @@ class Building(Frame):
             more = () if plane.along is None else (plane.along,)
             frame = plane.frame.without(*lost.get(plane.name, ()))
             frames.append((frame, plane.angle, plane.arm, *more))
-        return self.changed(frames=frames)
+        return self.changed(frames=frames, plan=None)
 
 
 def _rebuilt(kind: type[Building], given: dict[str, Any]) -> Building:
@@ -449,11 +547,19 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
     axial: dict[str, str] = {}
     first: dict[tuple[float, ...], FrameNode] = {}
     columns: dict[tuple[str, str], Member] = {}
-    for plane, (nodes, members) in zip(planes, laid, strict=True):
+    # Walls and columns before the posts of walls that lie across: the axial force is theirs.
+    for across, plane, (nodes, members) in (
+        (across, *pair) for across in (False, True) for pair in zip(planes, laid, strict=True)
+    ):
         if plane.along is None:
             continue
+        place_of = {node.name: round((node.x or 0.0) / _ONE_PLACE) for node in nodes}
+        upright = [each for each in members if place_of[each.start] == place_of[each.end]]
+        posts = {place_of[each.start] for each in upright if each.kind.ends == "pinned"}
         at = {}
         for node, place in zip(nodes, plane.places([node.x for node in nodes]), strict=True):
+            if (place_of[node.name] in posts) is not across:
+                continue
             steps = np.round(np.array([*place, node.y]) / _ONE_PLACE).tolist()
             leader = first.setdefault(tuple(steps), node)
             at[node.name] = leader.name
@@ -462,14 +568,10 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
                 held and leader.support in ("fixed", "pinned", "roller")
             ):
                 rises[node.name] = leader.name
-        upright = {node.name: node for node in nodes}
-        for member in members:
-            if abs((upright[member.start].x or 0.0) - (upright[member.end].x or 0.0)) > _ONE_PLACE:
+        for member in upright:
+            if member.start not in at:
                 continue
-            key = at[member.start], at[member.end]
-            other = columns.setdefault(key, member)
-            if other is member:
-                continue
+            other = columns.setdefault((at[member.start], at[member.end]), member)
             if other.name.split(":")[0] == plane.name:
                 continue
             if other.name in axial.values():
@@ -477,8 +579,9 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
                     f"building: column {member.name} is one of three planes, with {other.name}; a "
                     "column has two"
                 )
-            stiff = [one.kind.modulus * one.kind.area for one in (member, other)]
-            if abs(stiff[0] - stiff[1]) > _SAME * max(stiff):
+            stiff = [each.kind.modulus * each.kind.area for each in (member, other)]
+            is_post = (member.kind.ends == "pinned") != (other.kind.ends == "pinned")
+            if abs(stiff[0] - stiff[1]) > _SAME * max(stiff) and not is_post:
                 raise InputError(
                     f"building: columns {other.name} and {member.name} are at one place, and their "
                     f"E A are {stiff[1]:.4g} and {stiff[0]:.4g} N; give both the same section, or "

@@ -447,7 +447,8 @@ def _described(frame: Frame) -> str:
         for several in (storeys, bays)
     ]
     scale, of_force = paper("N")
-    loads = ", ".join(f"{scale * load:.4g}" for load in np.atleast_1d(np.asarray(frame.beam_load)))
+    beams: Any = frame.beam_load
+    loads = ", ".join(f"{scale * load:.4g}" for floor in beams for load in np.atleast_1d(floor))
     words = [
         f"{len(storeys)} storeys of {sizes[0]} m and {len(bays)} bays of {sizes[1]} m"
         if storeys

@@ -49,6 +49,8 @@ contains
 
       known = messages%count
       call check_values(record, messages)
+      ! Of a grid in plan Python makes planes, which are checked then.
+      if (allocated(record%bays_x)) return
       if (messages%count > known) return
       call lay_grid(self, record, messages)
       call put_nodes(self, record, messages)
@@ -156,9 +158,18 @@ contains
          if (record%floor(i)%floor > storeys) then
             call refuse('floor: floor', record%floor(i)%floor, 'floors', storeys)
          end if
-         if (abs(record%floor(i)%dead_load) > 0.0_wp .and. bays == 0) then
+         if (max(record%floor(i)%floor_load, record%floor(i)%live_floor_load, &
+                 record%floor(i)%edge_load) > 0.0_wp) then
+            call messages%add('floor: floor_load, live_floor_load and edge_load are of a grid in plan; '// &
+                              'give bays_x and bays_y, or dead_load')
+         end if
+         if (.not. record%floor(i)%is_loaded()) cycle
+         if (bays == 0) then
             call messages%add('floor: dead_load acts on beams, and there are none; give it to the nodes '// &
                               'as load_y')
+         else if (all(size(record%floor(i)%dead_load) /= [1, bays])) then
+            call messages%add('floor: dead_load has '//to_text(size(record%floor(i)%dead_load))// &
+                              ' values for '//to_text(bays)//' bays; give one, or one for each')
          end if
       end do
       do i = 1, size(record%column_of)
@@ -179,6 +190,10 @@ contains
          integer, intent(in) :: most
 
          call check_storey(group, cell%storey)
+         if (any([cell%line_x, cell%line_y, cell%of_line] > 0) .or. cell%along /= '') then
+            call messages%add(group//': line_x, line_y, of_line and along are of a grid in plan; give '// &
+                              'bays_x and bays_y, or remove them')
+         end if
          if (cell%line > 0 .and. cell%lines /= 'all') then
             call messages%add(group//': '//key//' and '//key//"s = '"//trim(cell%lines)// &
                               "' are given; remove one")
@@ -248,7 +263,7 @@ contains
       else
          call choose(record%beam_of)
          do i = 1, size(record%floor)
-            if (any(record%floor(i)%floor == [0, storey])) member%load = record%floor(i)%dead_load
+            if (any(record%floor(i)%floor == [0, storey])) member%load = record%floor(i)%load_on(line)
          end do
       end if
       if (member%kind_of == left_out) return

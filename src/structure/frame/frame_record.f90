@@ -38,10 +38,16 @@ module rbs_structure_frame_frame_record
    !> Mass and load of floors, 0: of all.
    type, extends(visited_record), public :: floor_record
       integer :: floor = 0
-      real(wp) :: mass = 0.0_wp, dead_load = 0.0_wp, live_load = 0.0_wp, inertia = 0.0_wp
+      real(wp) :: mass = 0.0_wp, live_load = 0.0_wp, inertia = 0.0_wp
+      !> On all beams, or on those of each bay
+      real(wp), allocatable :: dead_load(:)
       real(wp) :: centre_x = 0.0_wp, centre_y = 0.0_wp
+      !> Of a grid in plan, on its panels and on the beams around it
+      real(wp) :: floor_load = 0.0_wp, live_floor_load = 0.0_wp, edge_load = 0.0_wp
    contains
       procedure :: visit => visit_floor
+      procedure :: load_on
+      procedure :: is_loaded
    end type floor_record
 
    !> Weights on the nodes of floors, which Python makes into loads of the nodes.
@@ -79,6 +85,9 @@ module rbs_structure_frame_frame_record
    type, extends(visited_record), public :: cell_record
       logical :: is_beam = .false., is_infill = .false.
       integer :: line = 0, storey = 0
+      !> In a grid in plan: lines of a column along x and y, line of a beam, direction of a beam or wall
+      integer :: line_x = 0, line_y = 0, of_line = 0
+      character(len=4) :: along = ''
       !> Which lines or bays where no number is given: all of them, the two outer, or those between
       character(len=8) :: lines = 'all'
       !> Name of a kind; of a drawn member that of a drawing, and of its second half if it is another one
@@ -132,6 +141,9 @@ module rbs_structure_frame_frame_record
 
    type, extends(visited_record) :: frame_record
       real(wp), allocatable :: storeys(:), bays(:)
+      !> Of a grid in plan, of which Python makes a building
+      real(wp), allocatable :: bays_x(:), bays_y(:)
+      real(wp) :: eccentricity_x = 0.0_wp, eccentricity_y = 0.0_wp
       character(len=16) :: kinematics = 'small', base = 'fixed', pattern = 'triangular', collapse = 'storey'
       logical :: diaphragm = .false.
       !> Of the lateral load of a building [degrees]
@@ -282,6 +294,12 @@ contains
                  most_storeys)
       call v%key('bays', self%bays, 'm', above_zero, 'widths of the bays from the left; without them one '// &
                  'line of columns', most_storeys)
+      call v%key('bays_x', self%bays_x, 'm', above_zero, 'widths of the bays along x of a building in '// &
+                 'plan, in place of bays', most_storeys)
+      call v%key('bays_y', self%bays_y, 'm', above_zero, 'the same along y', most_storeys)
+      call v%key('eccentricity_x', self%eccentricity_x, '', any_number, 'of a grid in plan: how far the '// &
+                 'centres of mass are moved along x, in parts of its length')
+      call v%key('eccentricity_y', self%eccentricity_y, '', any_number, 'the same along y')
       call v%word('kinematics', self%kinematics, &
                   'small rotations, or the same with second-order work of the dead load', 'small pdelta')
       call v%word('base', self%base, 'how the columns of the grid stand', 'fixed pinned free')
@@ -335,9 +353,15 @@ contains
                'in plan')
       call v%key('centre_y', self%centre_y, 'm', any_number, 'the same along y')
       call v%key('dead_load', self%dead_load, 'N/m', any_number, 'dead load on the beams of the floor, '// &
-                 'downward')
+                 'all or of each bay, downward', most_storeys)
       call v%key('live_load', self%live_load, 'N/m', any_number, 'live load on them, of which '// &
                  'live_share acts')
+      call v%key('floor_load', self%floor_load, 'Pa', not_negative, 'of a grid in plan: dead load on the '// &
+                 'panels between beams, N/m2')
+      call v%key('live_floor_load', self%live_floor_load, 'Pa', not_negative, 'of a grid in plan: live '// &
+                 'load on them, of which live_share acts')
+      call v%key('edge_load', self%edge_load, 'N/m', not_negative, 'of a grid in plan: weight of facades '// &
+                 'on the beams of the outer lines')
    end subroutine visit_floor
 
    subroutine visit_node_load(self, v)
@@ -412,6 +436,14 @@ contains
          call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
          call v%word('lines', self%lines, 'which lines in place of a number', 'all outer inner')
       end if
+      if (self%is_beam .or. self%is_infill) then
+         call v%key('of_line', self%of_line, '', not_negative, 'of a grid in plan: line that it is in, 0 '// &
+                    'for all')
+      else
+         call v%key('line_x', self%line_x, '', not_negative, 'of a grid in plan: place along x, 0 for all')
+         call v%key('line_y', self%line_y, '', not_negative, 'the same along y')
+      end if
+      call v%word('along', self%along, 'of a grid in plan: direction of a beam, an infill or a wall', 'x y')
       call v%key('storey', self%storey, '', not_negative, 'storey from the ground up, 0 for all')
       if (self%is_infill) then
          call v%word('kind', self%kind, 'name of the infill, ''none'' where there is none; the last '// &
@@ -477,6 +509,23 @@ contains
       call v%word('member', self%member, 'name of the member that is lost', required=.true.)
       call v%key('time', self%time, 's', any_number, 'time of the record from which on it carries nothing')
    end subroutine visit_loss
+
+   !> Dead load on the beam of a bay [N/m].
+   pure real(wp) function load_on(self, bay)
+      class(floor_record), intent(in) :: self
+      integer, intent(in) :: bay
+
+      load_on = 0.0_wp
+      if (self%is_loaded()) load_on = self%dead_load(min(bay, size(self%dead_load)))
+   end function load_on
+
+   !> Whether its beams have a dead load.
+   elemental logical function is_loaded(self)
+      class(floor_record), intent(in) :: self
+
+      is_loaded = allocated(self%dead_load)
+      if (is_loaded) is_loaded = any(abs(self%dead_load) > 0.0_wp)
+   end function is_loaded
 
    !> Whether a group is of a line, or bay, and a storey.
    pure logical function fits(self, line, storey, last)

@@ -133,7 +133,7 @@ contains
                   plan%inertia = floor%inertia
                   centre = spread([floor%centre_x, floor%centre_y], 2, floors)
                end if
-               if (abs(floor%dead_load) > 0.0_wp) then
+               if (floor%is_loaded()) then
                   call messages%add('floor: dead_load acts on the beams of a grid, and a building has '// &
                                     'none; give it to its members as load')
                end if

@@ -1,0 +1,504 @@
+"""A grid in plan: the planar frames of its lines, their loads, and the masses of its floors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array
+from rbsdem.errors import InputError, each_told_once
+from rbsdem.model.column import notes_off
+from rbsdem.model.frame import (
+    FrameMember,
+    at_place,
+    cells_of,
+    groups_of_kinds,
+    names_of,
+    rigid_lengths,
+    stated,
+)
+from rbsdem.model.materials import Ties
+from rbsdem.model.shape import Section
+from rbsdem.model.wall import WallSection
+from rbsdem.section.frame import Frame, drawings_of
+from rbsdem.section.grid import (
+    CONCRETE_WEIGHT,
+    elastic_kind,
+    halves_of,
+    infill_groups,
+    is_drawn,
+    told_of_small,
+)
+from rbsdem.section.infill import Infill
+
+Along = Literal["x", "y"]
+Cells = dict[Any, Any]
+
+
+class Line(NamedTuple):
+    """A line of the grid: its direction, and its number from the origin."""
+
+    along: Along
+    number: int
+
+    @property
+    def name(self) -> str:
+        """Name of its frame."""
+        return f"{self.along}-{self.number}"
+
+
+@dataclass(frozen=True)
+class PlanDrawing:
+    """What a building was drawn from: sections and loads of a grid in plan.
+
+    Attributes
+    ----------
+    storeys, bays_x, bays_y : tuple of float
+        Heights and widths [m].
+    columns : dict
+        By (line across x, line across y, storey), 0 for all.
+    beams_x, beams_y, infills_x, infills_y : dict
+        By (bay, line, storey), 0 for all.
+    walls : dict
+        Sections of all storeys or of each, by (direction, line, place).
+    floor_load, live_load, edge_load : tuple of float
+        Of each floor: on its panels [N/m2], and on the beams of the outer lines [N/m].
+    live_share, self_weight, mass, floor_mass, eccentricity, ends, panel_hoops, base
+        As of `rbsdem.Building.grid`.
+    """
+
+    storeys: tuple[float, ...]
+    bays_x: tuple[float, ...]
+    bays_y: tuple[float, ...]
+    columns: Cells
+    beams_x: Cells
+    beams_y: Cells
+    walls: dict[tuple[Along, int, int], tuple[WallSection, ...]] = field(default_factory=dict)
+    infills_x: Cells = field(default_factory=dict)
+    infills_y: Cells = field(default_factory=dict)
+    floor_load: tuple[float, ...] = (0.0,)
+    live_load: tuple[float, ...] = (0.0,)
+    edge_load: tuple[float, ...] = (0.0,)
+    live_share: float = 0.3
+    self_weight: bool = False
+    mass: Literal["from_loads"] | None = None
+    floor_mass: tuple[float, ...] = ()
+    eccentricity: tuple[float, float] = (0.0, 0.0)
+    ends: float | Literal["asce"] | None = None
+    panel_hoops: Ties | Literal["none"] | None = None
+    base: Literal["fixed", "pinned"] = "fixed"
+
+    @classmethod
+    def checked(cls, **given: Any) -> PlanDrawing:
+        """Return the drawing of the arguments of `rbsdem.Building.grid`, which are checked."""
+        sizes = {}
+        for name in ("storeys", "bays_x", "bays_y"):
+            values = _arguments.finite_vector(given[name], f"building: {name}", shape="1 or m")
+            if not values.size or (values <= 0.0).any():
+                raise InputError(
+                    f"building: {name} = {_arguments.shown(given[name])} must be lengths above 0"
+                )
+            sizes[name] = tuple(values.tolist())
+        lines = len(sizes["bays_x"]) + 1, len(sizes["bays_y"]) + 1
+        floors = len(sizes["storeys"])
+        made = given | sizes
+        made["columns"] = cells_of(given["columns"], "columns", FrameMember, *lines, halves=Section)
+        _check_places("columns", made["columns"], ("line_x", "line_y", "storey"), (*lines, floors))
+        for along, bays, across in (("x", lines[0] - 1, lines[1]), ("y", lines[1] - 1, lines[0])):
+            kinds: Any = (("beams", FrameMember, Section), ("infills", Infill, None))
+            for name, kind, halves in kinds:
+                own = f"{name}_{along}"
+                made[own] = cells_of(given[own], own, kind, bays, across, halves=halves)
+                _check_places(own, made[own], ("bay", "line", "storey"), (bays, across, floors))
+        made["walls"] = dict(_walls(given["walls"], lines, floors))
+        for name, unit in (("floor_load", "N/m2"), ("live_load", "N/m2"), ("edge_load", "N/m")):
+            made[name] = _by_floor(given[name], floors, name)
+            told_of_small(f"building: {name}", made[name], unit, f"6 k{unit} is 6e3")
+        mass = given["floor_mass"]
+        made["floor_mass"] = () if mass is None else _by_floor(mass, floors, "floor_mass")
+        if given["mass"] is not None:
+            _arguments.choice(given["mass"], "building: mass", ("from_loads",))
+            if mass is not None:
+                raise InputError("building: mass and floor_mass are given; give one of them")
+        off = _arguments.finite_vector(given["eccentricity"], "building: eccentricity")
+        if off.size != 2 or np.abs(off).max() >= 0.5:
+            raise InputError(
+                f"building: eccentricity = {_arguments.shown(given['eccentricity'])} must be two "
+                "parts of the lengths along x and y, below a half: 5 per cent is 0.05"
+            )
+        made["eccentricity"] = tuple(off.tolist())
+        made["live_share"] = _arguments.number(
+            given["live_share"], "building: live_share", least=0.0, most=1.0
+        )
+        made["self_weight"] = _arguments.boolean(given["self_weight"], "building: self_weight")
+        _arguments.choice(given["base"], "building: base", ("fixed", "pinned"))
+        return cls(**made)
+
+    @property
+    def lines(self) -> list[Line]:
+        """All lines, those along x first."""
+        return [
+            Line(along, number)
+            for along in ("x", "y")
+            for number in range(1, len(self.bays("y" if along == "x" else "x")) + 2)
+        ]
+
+    def bays(self, along: Along) -> tuple[float, ...]:
+        """Return the widths of bays in a direction."""
+        return self.bays_x if along == "x" else self.bays_y
+
+    def places(self, along: Along) -> Array:
+        """Return the places of the lines across a direction, from the first [m]."""
+        return np.concatenate(([0.0], np.cumsum(self.bays(along))))
+
+    def beam(self, line: Line, bay: int, storey: int) -> Any:
+        """Return what stands in a place of beams."""
+        cells = self.beams_x if line.along == "x" else self.beams_y
+        return at_place(cells, bay, line.number, storey)
+
+    def column(self, line: Line, place: int, storey: int) -> Any:
+        """Return what stands in a place of columns, as it bends in the plane of a line.
+
+        A wall bends in its own plane; across it it is a post between two pins.
+        """
+        across = Line("y" if line.along == "x" else "x", place)
+        wall = self.walls.get((*line, place))
+        if wall is not None:
+            return wall[min(storey, len(wall)) - 1]
+        wall = self.walls.get((*across, line.number))
+        if wall is not None:
+            kind = elastic_kind(wall[min(storey, len(wall)) - 1])
+            return replace(kind, ends="pinned")  # type: ignore[type-var]
+        at = (place, line.number) if line.along == "x" else (line.number, place)
+        cell = at_place(self.columns, *at, storey)
+        if not is_drawn(cell) or line.along == "x":
+            return cell
+        halves = tuple(half.turned for half in halves_of(cell))
+        return halves if isinstance(cell, tuple) else halves[0]
+
+    def cells(self, line: Line) -> tuple[Cells, Cells, Cells]:
+        """Return columns, beams and infills of a line by place or bay and storey."""
+        levels, bays = range(1, len(self.storeys) + 1), len(self.bays(line.along))
+        infills = self.infills_x if line.along == "x" else self.infills_y
+        columns = {(i, k): self.column(line, i, k) for k in levels for i in range(1, bays + 2)}
+        beams = {(i, k): self.beam(line, i, k) for k in levels for i in range(1, bays + 1)}
+        panels = {(i, k): at_place(infills, i, line.number, k) for i, k in beams if infills}
+        return columns, beams, panels
+
+    def weights(self) -> Weights:
+        """Return the loads of beams and nodes, and the masses that they are of."""
+        found = Weights(self)
+        for k, (dead, live) in enumerate(zip(self.floor_load, self.live_load, strict=True), 1):
+            found.put_panels(k, dead + self.live_share * live)
+        for line in self.lines:
+            columns, beams, _ = self.cells(line)
+            outer = line.number in (1, len(self.bays("y" if line.along == "x" else "x")) + 1)
+            for (i, k), beam in beams.items():
+                load = self.edge_load[k - 1] if outer and beam is not None else 0.0
+                if self.self_weight:
+                    load += CONCRETE_WEIGHT * _area(beam)
+                found.put_beam(line, i, k, load)
+            for (i, k), column in columns.items() if self.self_weight else ():
+                # A column of two lines weighs in that along x.
+                if line.along == "x" or isinstance(column, WallSection):
+                    half = 0.5 * CONCRETE_WEIGHT * _area(column) * self.storeys[k - 1]
+                    found.put_column(line, i, k, half)
+        return found
+
+    def groups(self, of_building: dict[str, Any]) -> _core.Statement:
+        """Return the groups of a case file, with the keys of the building in `&frame`."""
+        walls = [one for several in self.walls.values() for one in several]
+        placed = [*self.columns.values(), *self.beams_x.values(), *self.beams_y.values(), *walls]
+        drawn, sections, hoops = drawings_of(placed, self.panel_hoops)
+        grid: dict[str, Any] = {
+            "storeys": self.storeys,
+            "bays_x": self.bays_x,
+            "bays_y": self.bays_y,
+        }
+        usual = {"ends": None, "base": "fixed", "mass": None, "self_weight": False}
+        grid |= {name: own for name, no in usual.items() if (own := getattr(self, name)) != no}
+        grid |= {
+            f"eccentricity_{a}": e or None for a, e in zip("xy", self.eccentricity, strict=True)
+        }
+        grid |= {
+            "panel_hoops": hoops,
+            "live_share": self.live_share if any(self.live_load) else None,
+        }
+        parts: list[Any] = [("frame", grid | of_building)]
+        loads = {
+            "mass": self.floor_mass,
+            "floor_load": self.floor_load,
+            "edge_load": self.edge_load,
+        }
+        loads["live_floor_load"] = self.live_load
+        for i in range(len(self.storeys)):
+            own = {
+                name: (several[i] or None) if several else None for name, several in loads.items()
+            }
+            parts.append(("floor", {"floor": i + 1} | own))
+        names = names_of([one for one in placed if isinstance(one, FrameMember)])
+        parts += groups_of_kinds(names)
+
+        def put(group: str, cell: Any, **place: Any) -> None:
+            keys = {"kind": _core.Text("none")} if cell is None else drawn.get(cell)
+            if keys is None:
+                keys = {"kind": _core.Text(names[stated(cell)])} | rigid_lengths(cell.rigid_end)
+            parts.append((group, {k: v or None for k, v in place.items()} | keys))
+
+        for (i, j, k), cell in self.columns.items():
+            put("column_of", cell, line_x=i, line_y=j, storey=k)
+        for (way, line, place), several in self.walls.items():
+            x, y = (place, line) if way == "x" else (line, place)
+            for k, wall in enumerate(several, 1 if len(several) > 1 else 0):
+                put("column_of", wall, along=way, line_x=x, line_y=y, storey=k)
+        beams = {"x": self.beams_x, "y": self.beams_y}
+        infills = {"x": self.infills_x, "y": self.infills_y}
+        for along, cells in beams.items():
+            for (i, j, k), cell in cells.items():
+                put("beam_of", cell, along=along, bay=i, of_line=j, storey=k)
+        panels = [
+            ({"along": along, "bay": i or None, "of_line": j or None, "storey": k or None}, cell)
+            for along, cells in infills.items()
+            for (i, j, k), cell in cells.items()
+        ]
+        return _core.joined(parts) + infill_groups(panels) + sections
+
+    def building(self, cls: Any, more: Mapping[str, Any]) -> Any:
+        """Return the building: its frames stand under the axial loads of the elastic one.
+
+        Parameters
+        ----------
+        cls : type
+            `rbsdem.Building`.
+        more : mapping
+            Its other arguments.
+        """
+        weights = self.weights()
+        cells = {line: self.cells(line) for line in self.lines}
+        # Posts alone are no frame.
+        cells = {
+            line: own
+            for line, own in cells.items()
+            if any(own[1].values())
+            or any(one is not None and not _is_post(one) for one in own[0].values())
+        }
+        places = [(Line("y", i), y) for i, y in enumerate(self.places("x"), 1)]
+        places += [(Line("x", j), -y) for j, y in enumerate(self.places("y"), 1)]
+        arms = {line: float(arm) for line, arm in places}
+        masses = weights.masses(self.floor_mass, self.mass)
+        given: dict[str, Any] = {"names": [line.name for line in cells]}
+        given |= dict(zip(("floor_mass", "centres", "inertia"), masses, strict=True))
+
+        def assembled(drawn: bool, **about: Any) -> Any:
+            frames = []
+            for line, own in cells.items():
+                try:
+                    frame = self._frame(line, own, weights, axial if drawn else None)
+                except InputError as error:
+                    raise error.of(f"frame {line.name}") from None
+                frames.append((frame, 90.0 if line.along == "y" else 0.0, arms[line], 0.0))
+            return cls(frames, **given | about)
+
+        axial: dict[str, float] = {}
+        with notes_off():
+            parts = assembled(False).parts
+        axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
+        with each_told_once():
+            return assembled(True, **more, plan=self)
+
+    def _frame(
+        self,
+        line: Line,
+        cells: tuple[Cells, Cells, Cells],
+        weights: Weights,
+        axial: Mapping[str, float] | None,
+    ) -> Frame:
+        """Return the frame of a line: elastic, or of its sections under axial loads."""
+        columns, beams, infills = cells
+        more: dict[str, Any] = {"ends": self.ends, "panel_hoops": self.panel_hoops}
+        if axial is None:
+            columns, beams = (
+                {at: elastic_kind(one) for at, one in own.items()} for own in (columns, beams)
+            )
+            more = {}
+        else:
+            start = f"{line.name}:"
+            more["axial_loads"] = {
+                name.removeprefix(start): load
+                for name, load in axial.items()
+                if name.startswith(start)
+            }
+            more["infills"] = infills or None
+        loads = weights.beams[line]
+        return Frame.grid(
+            self.storeys, self.bays(line.along), columns=columns, beams=beams, base=self.base,
+            dead_load=loads if loads.any() else 0.0, node_load=weights.nodes[line],
+            diaphragm=True, **more,
+        )  # fmt: skip
+
+
+class Weights:
+    """Loads of a grid in plan.
+
+    Attributes
+    ----------
+    beams : dict of Line to ndarray, shape (storeys, bays)
+        On the beams of each line [N/m].
+    nodes : dict of Line to dict
+        On the nodes of each line, by place and floor [N].
+    """
+
+    def __init__(self, drawing: PlanDrawing) -> None:
+        self.drawing = drawing
+        storeys = len(drawing.storeys)
+        self.beams = {
+            line: np.zeros((storeys, len(drawing.bays(line.along)))) for line in drawing.lines
+        }
+        self.nodes: dict[Line, dict[tuple[int, int], float]] = {one: {} for one in drawing.lines}
+        #: Weights of each floor with place, and second moment about themselves over the weight.
+        self.of_floor: list[list[tuple[float, float, float, float]]] = [[] for _ in range(storeys)]
+
+    def put_panels(self, storey: int, load: float) -> None:
+        """Put the load of a floor on its beams, by yield lines that bisect the corners of panels.
+
+        The trapezoid or triangle of a beam is the equal uniform load. A side without a beam leaves
+        its part to the others.
+        """
+        d = self.drawing
+        for i, a in enumerate(d.bays_x, 1):
+            for j, b in enumerate(d.bays_y, 1):
+                sides = [(Line("x", j), i, a), (Line("x", j + 1), i, a)]
+                sides += [(Line("y", i), j, b), (Line("y", i + 1), j, b)]
+                short, long = sorted((a, b))
+                parts = [
+                    0.25 * short * (short if length <= short else 2.0 * long - short)
+                    for _, _, length in sides
+                ]
+                kept = [
+                    part if d.beam(line, bay, storey) is not None else 0.0
+                    for part, (line, bay, _) in zip(parts, sides, strict=True)
+                ]
+                if not load:
+                    continue
+                if not any(kept):
+                    raise InputError(
+                        f"building: the panel in bay {i} along x and bay {j} along y of floor "
+                        f"{storey} has a load and no beam around it; give one of its beams"
+                    )
+                for part, (line, bay, length) in zip(kept, sides, strict=True):
+                    share = part / sum(kept) * a * b
+                    self.beams[line][storey - 1, bay - 1] += load * share / length
+                centre = d.places("x")[i - 1] + 0.5 * a, d.places("y")[j - 1] + 0.5 * b
+                self.of_floor[storey - 1].append((load * a * b, *centre, (a**2 + b**2) / 12.0))
+
+    def put_beam(self, line: Line, bay: int, storey: int, load: float) -> None:
+        """Put a load on a beam [N/m]."""
+        length = self.drawing.bays(line.along)[bay - 1]
+        middle = self.drawing.places(line.along)[bay - 1] + 0.5 * length
+        self.beams[line][storey - 1, bay - 1] += load
+        if load:
+            place = self._place(line, middle)
+            self.of_floor[storey - 1].append((load * length, *place, length**2 / 12.0))
+
+    def put_column(self, line: Line, place: int, storey: int, half: float) -> None:
+        """Put half of the weight of a column on the floor above, and half on that below [N]."""
+        at = self._place(line, self.drawing.places(line.along)[place - 1])
+        for floor in (storey, storey - 1) if half else ():
+            if floor > 0:
+                own = self.nodes[line]
+                own[place, floor] = own.get((place, floor), 0.0) + half
+                self.of_floor[floor - 1].append((half, *at, 0.0))
+
+    def _place(self, line: Line, along: float) -> tuple[float, float]:
+        across = "y" if line.along == "x" else "x"
+        arm = float(self.drawing.places(across)[line.number - 1])  # type: ignore[arg-type]
+        return (float(along), arm) if line.along == "x" else (arm, float(along))
+
+    def masses(self, given: tuple[float, ...], rule: str | None) -> tuple[Array, Array, Array]:
+        """Return masses, centres in plan and rotary inertia of the floors.
+
+        Of loads the masses are where these are; masses that are given are spread as the loads, or
+        where there are none evenly over the rectangle of the grid.
+        """
+        d = self.drawing
+        lengths = np.array([sum(d.bays_x), sum(d.bays_y)])
+        found = []
+        for i, own in enumerate(self.of_floor):
+            weight, x, y, second = np.array(own or [(0.0, 0.0, 0.0, 0.0)]).T
+            total, centre, spread = float(weight.sum()), 0.5 * lengths, (lengths**2).sum() / 12.0
+            if total > 0.0:
+                centre = np.array([weight @ x, weight @ y]) / total
+                spread = weight @ (second + (x - centre[0]) ** 2 + (y - centre[1]) ** 2) / total
+            mass = total / STANDARD_GRAVITY if rule is not None else given[i] if given else 0.0
+            found.append((mass, *(centre + d.eccentricity * lengths), mass * spread))
+        table = np.array(found)
+        return table[:, 0], table[:, 1:3], table[:, 3]
+
+
+def _walls(
+    given: Any, lines: tuple[int, int], floors: int
+) -> Iterator[tuple[tuple[Along, int, int], tuple[WallSection, ...]]]:
+    """Yield the sections of walls by direction, line and place; one wall stands in a place."""
+    taken: dict[tuple[int, int], Any] = {}
+    for key, one in (given or {}).items():
+        if not (isinstance(key, tuple) and len(key) == 3 and key[0] in ("x", "y")):
+            raise InputError(
+                f"building: walls: {_arguments.shown(key)} must be (direction, line, place), as "
+                '("x", 2, 1): along x on the second line, at its first place'
+            )
+        along, line, place = key
+        most = lines[::-1] if along == "x" else lines
+        number = _arguments.integer(line, f"building: walls: {key}: line", least=1, most=most[0])
+        at = _arguments.integer(place, f"building: walls: {key}: place", least=1, most=most[1])
+        each = [one] if isinstance(one, WallSection) else list(one)
+        for section in each:
+            _arguments.instance(section, f"building: walls: {key}", WallSection)
+        if len(each) not in (1, floors):
+            raise InputError(
+                f"building: walls: {key} has {len(each)} sections for {floors} storeys; give one, "
+                "or one for each"
+            )
+        where = (at, number) if along == "x" else (number, at)
+        if where in taken:
+            raise InputError(
+                f"building: walls: {key} and {taken[where]} are at one place; a wall with flanges "
+                "is no planar one: move one of them"
+            )
+        taken[where] = key
+        yield (along, number, at), tuple(each)
+
+
+def _check_places(name: str, cells: Cells, words: tuple[str, ...], most: tuple[int, ...]) -> None:
+    """Refuse places that the grid does not have."""
+    for key in cells:
+        for word, at, last in zip(words, key, most, strict=True):
+            if not 0 <= at <= last:
+                raise InputError(
+                    f"building: {name}: {word} = {at}, but the building has {last}; correct it, or "
+                    "give 0 for all"
+                )
+
+
+def _by_floor(given: Any, floors: int, name: str) -> tuple[float, ...]:
+    values = _arguments.finite_vector(given, f"building: {name}", shape="1 or m")
+    if values.size not in (1, floors) or (values < 0.0).any():
+        raise InputError(
+            f"building: {name} = {_arguments.shown(given)} must be a number, or one for each of "
+            f"{floors} floors, not below 0"
+        )
+    return tuple(np.broadcast_to(values, floors).tolist())
+
+
+def _is_post(one: Any) -> bool:
+    return isinstance(one, FrameMember) and one.ends == "pinned"
+
+
+def _area(one: Any) -> float:
+    """Return the area of the mean section of a member that is drawn; 0 of one by hand [m2]."""
+    kind = elastic_kind(one)
+    return float(kind.area) if kind is not None and is_drawn(one) else 0.0
