@@ -133,6 +133,11 @@ def test_the_executable_alone_says_what_to_type(house, run_cli):
         ("level = 'SD'", "level = 'LS'", "level = 'LS' is none of en_1998_3"),
         ("method = 'en_1998'", "method = 'n2'", "'n2' is not known"),
         ("&assess code = 'asce_41', knowledge = 0.75", "&records units = 'g'", "path is missing"),
+        (
+            "&assess code = 'asce_41', knowledge = 0.75",
+            "&limit member = 'N-*', rotations = 0.1, 0.2, 0.3",
+            "limits of 'N-*': no member with sections and no node with a panel",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words):

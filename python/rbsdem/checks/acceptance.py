@@ -21,9 +21,10 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.checks import aci_318, asce_41, en_1998, formulas
 from rbsdem.errors import InputError
-from rbsdem.model.frame import FrameMember, MemberGeometry
+from rbsdem.model.frame import MemberGeometry
 from rbsdem.model.shape import RectangularSection, Section, TeeSection
 from rbsdem.run.frame_result import FAILS, FrameResult
+from rbsdem.section.frame import Frame
 from rbsdem.section.quantities import quantities
 from rbsdem.section.strength import nominal_moment
 
@@ -526,21 +527,8 @@ def assess(
     if detailed != 1.0 and code != "en_1998_3":
         raise InputError("assess: detailing is for 'en_1998_3'; leave it out")
     place, rows = rows_at(result, at)
-    ends = demands(result, rows)
-    if not ends:
-        raise InputError(
-            "assess: the members of the frame have no sections; make it of them, as by "
-            "rbsdem.Frame.grid(columns=section, ...)"
-        )
-    levels = LEVELS[code]
-    stated = _given(limits, ends, levels)
-    walls = {name for name, kind in result.frame.kinds.items() if _is_wall(kind)}
-    without = sorted({d.member for d in ends} & walls - set(stated))
-    if without:
-        raise InputError(
-            f"assess: {', '.join(without)}: no limits of walls are known here that a public source "
-            f"confirms; give limits={{{without[0]!r}: rotations of {', '.join(levels)}}} [rad]"
-        )
+    levels, stated = LEVELS[code], limits_given(result.frame, code, limits)
+    walls, ends = _walls_of(result.frame), demands(result, rows)
     if code == "asce_41":
         # Joints are judged by their rotation, and a rigid one has none.
         ends = [d for d in ends if d.end != "joint"]
@@ -585,16 +573,34 @@ def assess(
     return Assessment(code, levels, result, place, made, detailed)
 
 
-def _is_wall(kind: FrameMember) -> bool:
-    return kind.sections is not None and any(section.shape == "wall" for section in kind.sections)
+def _walls_of(frame: Frame) -> set[str]:
+    """Return the names of the members that are walls."""
+    drawn = ((name, kind.sections or ()) for name, kind in frame.kinds.items())
+    return {name for name, sections in drawn if any(one.shape == "wall" for one in sections)}
 
 
-def _given(
-    limits: Any, ends: Sequence[_Demand], levels: tuple[str, ...]
-) -> dict[str, tuple[float, ...]]:
-    """Return the limits that were given, by names of members and nodes."""
+def limits_given(frame: Frame, code: AcceptanceCode, limits: Any) -> dict[str, tuple[float, ...]]:
+    """Return the limits that were given, by names of members and nodes.
+
+    Parameters
+    ----------
+    frame, code, limits
+        The frame, and the arguments of `assess`.
+
+    Raises
+    ------
+    InputError
+        If the frame has no sections, a limit is wrong or of no member, or a wall has none.
+    """
+    levels = LEVELS[code]
+    known = [name for name, kind in frame.kinds.items() if kind.sections is not None]
+    if not known:
+        raise InputError(
+            "assess: the members of the frame have no sections; make it of them, as by "
+            "rbsdem.Frame.grid(columns=section, ...)"
+        )
     # A rigid node has no rotation.
-    known = dict.fromkeys(d.member for d in ends if not math.isnan(d.rotation))
+    known += [spring.member for spring in frame.parts.springs if spring.group == "panel"]
     stated: dict[str, tuple[float, ...]] = {}
     if not isinstance(limits or {}, Mapping):
         raise InputError(f"assess: limits = {_arguments.shown(limits)} must be a mapping of names")
@@ -612,6 +618,12 @@ def _given(
                 "this name; give one, or a pattern, as 'C-*-1' for the columns of a storey"
             )
         stated |= dict.fromkeys(matching, tuple(rotations.tolist()))
+    without = sorted(_walls_of(frame) - set(stated))
+    if without:
+        raise InputError(
+            f"assess: {', '.join(without)}: no limits of walls are known here that a public source "
+            f"confirms; give limits={{{without[0]!r}: rotations of {', '.join(levels)}}} [rad]"
+        )
     return stated
 
 

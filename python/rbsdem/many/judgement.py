@@ -9,8 +9,9 @@ from typing import Any, cast
 
 import numpy as np
 
+from rbsdem._arguments import collected, raise_faults
 from rbsdem._files import text_table
-from rbsdem.checks.acceptance import LEVELS, Assessment, assess
+from rbsdem.checks.acceptance import LEVELS, Assessment, assess, limits_given
 from rbsdem.checks.target import Target, target
 from rbsdem.errors import InputError
 from rbsdem.many.check_target import TargetCheck, check_target
@@ -77,7 +78,7 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     InputError
         If what it asks for cannot be done: a line for each fault.
     """
-    faults = []
+    faults: list[str] = []
     if asked(case) and not isinstance(case.column, Frame):
         faults.append("target, assess: they are for frames; remove them from the case of a column")
     if case.target and (case.method != "static" or case.displacement is None):
@@ -85,10 +86,8 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
             "target: it is that of a push-over; give drive = 'displacement' without times"
         )
     spectrum = None
-    try:
+    with collected(faults):
         spectrum = _spectrum(case.target) if case.target else None
-    except InputError as error:
-        faults.append(str(error))
     levels = []
     for group in case.assess:
         known = LEVELS[group["code"]]
@@ -98,9 +97,17 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
                 f"assess: level = {levels[-1]!r} is none of {group['code']}; it is one of "
                 f"{', '.join(known)}"
             )
-    if faults:
-        raise InputError("\n".join(faults))
+        if isinstance(case.column, Frame):
+            with collected(faults):
+                limits_given(case.column, group["code"], _limits_of(case, group["code"]))
+    raise_faults(faults)
     return spectrum, levels
+
+
+def _limits_of(case: Case, code: str) -> dict[str, Any]:
+    """Return the limits that a case gives for a code, by names of members and nodes."""
+    given = (limit for limit in case.limit if limit.get("code", code) == code)
+    return {limit["member"]: limit["rotations"] for limit in given}
 
 
 def _spectrum(group: Mapping[str, Any]) -> DesignSpectrum:
@@ -179,10 +186,6 @@ def judge(
     for group in case.assess:
         names = ("knowledge", "primary", "detailing")
         options = {name: group[name] for name in names if name in group}
-        options["limits"] = {
-            limit["member"]: limit["rotations"]
-            for limit in case.limit
-            if limit.get("code", group["code"]) == group["code"]
-        }
+        options["limits"] = _limits_of(case, group["code"])
         assessments.append(assess(result, group["code"], at=at, **options))
     return Judgement(result, point, check, assessments, levels)
