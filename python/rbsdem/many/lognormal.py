@@ -76,7 +76,7 @@ class Bounds:
 
 
 def bounds_of_counts(level: Array, number: NDArray[Any], failures: NDArray[Any]) -> Bounds:
-    """Return the bounds of capacities by counts: below the level of a failure, above another.
+    """Return the bounds of capacities by counts: a failure is below its level, a survival above it.
 
     Parameters
     ----------

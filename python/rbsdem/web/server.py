@@ -1,6 +1,6 @@
 """The server of the page: on this machine alone, and for who knows its address alone.
 
-It listens on 127.0.0.1. Every path begins with a random token; without it there is nothing. A
+It listens on 127.0.0.1. Every path begins with a random token; a request without it is refused. A
 request whose Host or Origin is another one is refused, so that a page of another site gets no
 answer even if it guesses the port. No request names a file: the page and its parts are read once
 from the package, and what a user opens comes as text. One answer is computed at a time; of the
