@@ -1650,7 +1650,8 @@ def test_an_ida_tells_what_is_not_known_of_axial_failure():
     # Where no shear spring yields nothing can be lost, and nothing is run twice.
     weak = options | {"levels": [0.1, 0.2]}
     assert rbsdem.ida(bent(), records[:1], **weak).at_ends is None
-    assert rbsdem.ida(bent(), records[:1], axial_failure=True, **weak).at_ends is not None
+    assert rbsdem.ida(bent(), records[:1], axial_failure=np.True_, **weak).at_ends is not None
+    assert rbsdem.ida(bent(), records, axial_failure=0, **options).at_ends is None
     early, late = ida.at_ends
     assert (early.collapse_intensity <= ida.collapse_intensity).all()
     assert (ida.collapse_intensity <= late.collapse_intensity).all()

@@ -393,8 +393,10 @@ def ida(
     """
     begin = time.perf_counter()
     asked = axial_failure
+    if asked is not None:
+        asked = _arguments.boolean(asked, "ida: axial_failure")
     failing = {} if asked is False else _that_lose_their_load(columns_by_name(column))
-    if asked is not None and _arguments.boolean(asked, "ida: axial_failure") and not failing:
+    if asked and not failing:
         raise InputError(
             "ida: axial_failure = True: no member of a frame has a failure_drift; leave "
             "axial_failure out"
@@ -425,7 +427,7 @@ def ida(
     about = {n: v for n, v in kept.items() if v is not None and v is not False}
     about["levels"] = "search" if search is not None else "given"
     runs = work.finish()
-    needed = bool(failing) and (asked is True or _may_fail(runs, failing))
+    needed = bool(failing) and (asked or _may_fail(runs, failing))
     if watched:
         del runs.measures[_SHEARED]
     ends: list[Any] = [
