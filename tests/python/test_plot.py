@@ -214,8 +214,9 @@ def test_figure(figures, name):
         drawn = np.vstack([line.get_xydata() for line in axes[-1].get_lines()])
         scale = np.nanmax(np.abs(drawn), axis=0)
         assert np.nanmin(np.abs((drawn - point) / scale).max(axis=1)) < 5e-3
-    assert {family for family, _ in fonts(axes[0].figure)} == {"STIXGeneral"}
-    assert 6 < max(size for _, size in fonts(axes[0].figure)) <= 9.6
+    families, sizes = zip(*fonts(axes[0].figure), strict=True)
+    assert set(families) == {"STIXGeneral"}
+    assert 6 < max(sizes) <= 9.6
     if "line" in parameters(function):
         for line in ({"lw": 2.5, "c": "red", "ls": ":"}, {"linewidth": 2.5, "color": "red"}):
             for ax in np.ravel(function(*given, **line)):
