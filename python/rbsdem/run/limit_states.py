@@ -375,7 +375,7 @@ class Hinge:
 
 
 def hinge(result: Any, joint: int, length: float | None) -> Hinge:
-    """Return the response of a hinge; see `Result.hinge`."""
+    """Return the response of a hinge; see `ColumnResult.hinge`."""
     joint = _arguments.integer(joint, "joint")
     at = result.column.index_of(joint)
     if length is not None:

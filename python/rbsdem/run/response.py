@@ -96,8 +96,8 @@ def cyclic(
         (`Frame.collapse`), of a column displacement of the top over the height: the path ends
         there, and `summary["status"]` is "collapsed".
     openings : bool, optional
-        Whether to keep the openings of layered joints, for `Result.elongation` and
-        `Result.layer_deformation`.
+        Whether to keep the openings of layered joints, for `ColumnResult.elongation` and
+        `ColumnResult.layer_deformation`.
     corners : bool, optional
         Whether to keep rows between the points too, where a spring leaves its line.
     max_seconds : float, optional
@@ -215,12 +215,13 @@ def time_history(
         Keep every n-th step and the last one. By default rows are kept as described for `dt` of
         `Solver`.
     openings : bool, optional
-        Whether to keep the openings of layered joints, for `Result.elongation` and
-        `Result.layer_deformation`.
+        Whether to keep the openings of layered joints, for `ColumnResult.elongation` and
+        `ColumnResult.layer_deformation`.
     motion : bool, optional
-        Whether to keep how the top moves, for `Result.velocity`, `Result.acceleration` and
-        `Result.absolute_acceleration`; `summary` then has "peak_floor_acceleration" [m/s2], the
-        largest absolute acceleration of the top at the ends of all steps, in size.
+        Whether to keep how the top moves, for `ColumnResult.velocity`,
+        `ColumnResult.acceleration` and `ColumnResult.absolute_acceleration`; `summary` then has
+        "peak_floor_acceleration" [m/s2], the largest absolute acceleration of the top at the ends
+        of all steps, in size.
     **solver
         Settings of the method, see `rbsdem.Solver`: method, dt, events, tolerance, rho_infinity,
         allow_unstable, max_seconds.
