@@ -20,11 +20,9 @@ import numpy as np
 import openseespy.opensees as ops
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "benchmarks"))
-from drawn_building import building, least
+from drawn_building import building, fibre_frame, fibres, least
 
 import rbsdem
-from rbsdem.frames import FrameNode
-from rbsdem.springs import Bilinear, Layered
 
 E, MASS, LOAD = 30e9, 20e3, 10e3
 COLUMN = {"area": 0.16, "inertia": 2.1e-3, "yield_moment": 250e3}
@@ -155,36 +153,6 @@ def recorded(roof: int, t: Any, a: Any, dt: float, damping: rbsdem.Damping) -> A
     return found
 
 
-def fibres() -> list[tuple[float, float]]:
-    """Return places and areas of twelve fibres of a square section of 0.4 m."""
-    return [(0.4 * ((i + 0.5) / 12 - 0.5), 0.16 / 12) for i in range(12)]
-
-
-def portal_of_fibres(storeys: int, bays: int, load: float) -> rbsdem.Frame:
-    """Return a frame whose members have three sections of twelve fibres each."""
-
-    def kind(length: float) -> rbsdem.FrameMember:
-        def joint(share: float) -> Layered:
-            layers = []
-            for y, area in fibres():
-                k = E * area / (share * length)
-                layers.append((y, Bilinear(k, 0.0012 * share * length, HARDENING * k)))
-            return Layered(layers)
-
-        sections = {0.0: joint(1 / 6), 0.5: joint(2 / 3), 1.0: joint(1 / 6)}
-        return rbsdem.FrameMember(E, 1e12, 1.0, flexure=sections, interior="rigid")
-
-    nodes = [
-        FrameNode(f"N-{line + 1}-{floor + 1}", load_y=-load)
-        for line in range(bays + 1)
-        for floor in range(storeys)
-    ]
-    return rbsdem.Frame.grid(
-        [HEIGHT] * storeys, [BAY] * bays, columns=kind(HEIGHT), beams=kind(BAY), nodes=nodes,
-        floor_mass=MASS * bays, damping=rbsdem.Damping(mass=DAMPING.mass),
-    )  # fmt: skip
-
-
 def model_of_fibres(storeys: int, bays: int, load: float) -> int:
     """Make the same frame in OpenSees, under its dead load; return the node of the roof."""
     lines = nodes_of_model(storeys, bays)
@@ -212,13 +180,13 @@ def model_of_fibres(storeys: int, bays: int, load: float) -> int:
 def compare_fibres(t: Any, a: Any) -> None:
     """Print what sections of fibres, whose axial forces vary, differ by and cost."""
     load, path = 400e3, [0.03, -0.04, 0.06, -0.08, 0.0]
-    own = rbsdem.cyclic(portal_of_fibres(2, 1, load), displacement=path).force
+    own = rbsdem.cyclic(fibre_frame(2, 1, load), displacement=path).force
     for parts in (100, 1000):
         roof = model_of_fibres(2, 1, load)
         other = np.array(driven(roof, 2, 1, path, parts))
         gap = abs(other - own[: len(other)])[:-1].max() / abs(own).max()
         print(f"fibres, 2 x 1, axial forces vary, {parts} increments a leg: {gap:.1e}")
-    built = portal_of_fibres(3, 3, load)
+    built = fibre_frame(3, 3, load)
     begin = time.process_time()
     run = rbsdem.time_history(built, t, ground_acceleration=a, method="newmark", dt=0.005, every=2)
     ours = time.process_time() - begin

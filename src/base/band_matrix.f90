@@ -191,8 +191,8 @@ contains
       !> Band that was factored before, replaced by this one, and its factor: 1/D and L; D
       real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), diagonal(n)
       integer, intent(out) :: negative
-      real(wp) :: column(width + 1)
-      integer :: first, i, j, k
+      real(wp) :: column(width + 1), share, next
+      integer :: first, last, i, j, k
 
       do first = 1, n
          if (.not. all(abs(band(:, first) - factored(:, first)) <= 0.0_wp)) exit
@@ -201,11 +201,16 @@ contains
       do j = first, n
          factored(:, j) = band(:, j)
          column = band(:, j)
-         do k = max(1, j - width), j - 1
+         ! Two columns at once, as the sum is loaded and stored half as often so.
+         do k = max(1, j - width), j - 2, 2
             i = j - k
-            column(:1 + width - i) = column(:1 + width - i) &
-                                     - (triangle(1 + i, k)*diagonal(k))*triangle(1 + i:, k)
+            last = 1 + width - i
+            share = triangle(1 + i, k)*diagonal(k)
+            next = triangle(i, k + 1)*diagonal(k + 1)
+            column(:last) = (column(:last) - share*triangle(1 + i:, k)) - next*triangle(i:width, k + 1)
+            column(last + 1) = column(last + 1) - next*triangle(1 + width, k + 1)
          end do
+         if (k == j - 1) column(:width) = column(:width) - (triangle(2, k)*diagonal(k))*triangle(2:, k)
          if (.not. column(1) > tiny(1.0_wp)) call count_negative(column(1), negative)
          diagonal(j) = column(1)
          triangle(1, j) = 1.0_wp/diagonal(j)

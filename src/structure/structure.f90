@@ -110,8 +110,9 @@ module rbs_structure_structure
       logical :: tangent_damping = .false.
       !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
-      !> Where it acts on the unknowns: momenta of the modes times sqrt(2 zeta omega), whose products are the
-      !> damping matrix (unknowns, modes)
+      !> Where it acts on the unknowns: those that have mass; momenta of the modes times sqrt(2 zeta omega),
+      !> whose products are the damping matrix (unknowns with mass, modes)
+      integer, allocatable :: massed(:)
       real(wp), allocatable :: modal_momenta(:, :)
       !> Whether there is damping at all
       logical :: damped = .false.

@@ -14,6 +14,8 @@ from collections.abc import Callable
 from typing import Any
 
 import rbsdem
+from rbsdem.frames import FrameNode
+from rbsdem.springs import Bilinear, Layered
 
 
 def section(depth: float) -> rbsdem.RectangularSection:
@@ -35,6 +37,39 @@ def building() -> rbsdem.Frame:
         [3.2] * 4, [6.0] * 3, columns={(0, 0): upper, (0, 1): lowest},
         beams=rbsdem.section.member(section(0.5), 5.6, rigid_end=0.2),
         beam_load=20e3, floor_mass=60e3, kinematics="pdelta",
+    )  # fmt: skip
+
+
+def fibres() -> list[tuple[float, float]]:
+    """Return places and areas of twelve fibres of a square section of 0.4 m."""
+    return [(0.4 * ((i + 0.5) / 12 - 0.5), 0.16 / 12) for i in range(12)]
+
+
+def fibre_frame(storeys: int, bays: int, load: float) -> rbsdem.Frame:
+    """Return a frame whose members have three sections of twelve fibres each.
+
+    Its sections, loads and damping are those of `studies/frames_opensees.py`.
+    """
+
+    def kind(length: float) -> rbsdem.FrameMember:
+        def joint(share: float) -> Layered:
+            layers = []
+            for y, area in fibres():
+                k = 30e9 * area / (share * length)
+                layers.append((y, Bilinear(k, 0.0012 * share * length, 0.01 * k)))
+            return Layered(layers)
+
+        sections = {0.0: joint(1 / 6), 0.5: joint(2 / 3), 1.0: joint(1 / 6)}
+        return rbsdem.FrameMember(30e9, 1e12, 1.0, flexure=sections, interior="rigid")
+
+    nodes = [
+        FrameNode(f"N-{line + 1}-{floor + 1}", load_y=-load)
+        for line in range(bays + 1)
+        for floor in range(storeys)
+    ]
+    return rbsdem.Frame.grid(
+        [3.2] * storeys, [6.0] * bays, columns=kind(3.2), beams=kind(6.0), nodes=nodes,
+        floor_mass=20e3 * bays, damping=rbsdem.Damping(mass=0.3),
     )  # fmt: skip
 
 

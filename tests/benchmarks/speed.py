@@ -21,7 +21,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from drawn_building import building, least
+from benchmark import record_20_s
+from drawn_building import building, fibre_frame, least
+from ensembles import predicted
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -29,6 +31,14 @@ from rich.table import Table
 import rbsdem
 
 MASS, LOAD = 20e3, 10e3
+
+#: Ensembles, whose times are those of a run, and their numbers of runs.
+RUNS = {
+    "a run of 64, paper's column, no settings": 64,
+    "a run of 10, layered column": 10,
+    "a run of 4, 3 x 3, modal damping": 4,
+    "a run of 4, drawn building": 4,
+}
 
 
 def record() -> tuple[np.ndarray, np.ndarray]:
@@ -51,12 +61,28 @@ def frame(storeys: int, bays: int, **more: Any) -> rbsdem.Frame:
     )
 
 
-def shake(structure: rbsdem.Frame) -> Callable[[], Any]:
-    """Return a run under the record, 4000 steps of Newmark's method."""
+def shake(structure: Any, **how: Any) -> Callable[[], Any]:
+    """Return a run under the record, without more 4000 steps of Newmark's method."""
     t, a = record()
-    return lambda: rbsdem.time_history(
-        structure, t, ground_acceleration=a, method="newmark", dt=0.005, every=4000
-    )
+    how = how or {"method": "newmark", "dt": 0.005}
+    return lambda: rbsdem.time_history(structure, t, ground_acceleration=a, every=4000, **how)
+
+
+def together(structure: Any, name: str, motion: Any, **how: Any) -> Callable[[], Any]:
+    """Return an ensemble of one thread."""
+    scales = np.linspace(0.2, 1.0, RUNS[name])
+    return lambda: rbsdem.ensemble(structure, motion, scales=scales, jobs=1, **how)
+
+
+def wall_frame() -> rbsdem.Frame:
+    """Return a house of six storeys and three bays, one line of which is a wall."""
+    steel = rbsdem.Steel(450e6, 600e6)
+    hoops, curtain = rbsdem.Hoops(0.010, 0.1, steel, 2, 4), rbsdem.Curtain(0.010, 0.2, steel)
+    wall = rbsdem.WallSection(
+        4.0, 0.25, rbsdem.Concrete(25e6), vertical=curtain, horizontal=curtain,
+        boundary=rbsdem.Boundary(0.5, rbsdem.Bars(8, 0.020, steel), hoops),
+    )  # fmt: skip
+    return rbsdem.examples.house(6, 3, walls={2: wall})
 
 
 def runs() -> dict[str, Callable[[], Any]]:
@@ -75,7 +101,11 @@ def runs() -> dict[str, Callable[[], Any]]:
     layered = make()
     drifts = paper.length * np.concatenate([np.linspace(0, s * 0.02, 1300) for s in (1, -1, 1)])
     loaded = rbsdem.peer.paper_columns()["soesianawati_1"]
-    t, a = record()
+    single, some, frames, houses = RUNS
+    walls, tower = wall_frame(), rbsdem.examples.house(16, 4)
+    chain = rbsdem.Column(
+        100.0, 614.4, rbsdem.springs.Elastic(7e9), rbsdem.springs.Elastic(2.5e10), n=5000
+    )
     return {
         "push-over, 3 x 3": lambda: rbsdem.pushover(small, drift=0.03, points=1),
         "push-over, 8 x 8": lambda: rbsdem.pushover(large, drift=0.03, points=1),
@@ -83,13 +113,24 @@ def runs() -> dict[str, Callable[[], Any]]:
         "record, 3 x 3": shake(small),
         "record, 8 x 8": shake(large),
         "record, 3 x 3, modal damping": shake(modal),
+        "record, 3 x 3, fibres": shake(fibre_frame(3, 3, 400e3)),
         "push-over, drawn building": lambda: rbsdem.pushover(drawn, drift=0.015),
+        "push-over, wall-frame": lambda: rbsdem.pushover(walls, drift=0.02),
+        "record, wall-frame, default": shake(walls, dt=0.01),
+        "drawn 16 x 4, made": lambda: rbsdem.examples.house(16, 4).parts,
+        "drawn 16 x 4, push-over to 1.5 %": lambda: rbsdem.pushover(tower, drift=0.015),
         "static, one body, 6000 points": lambda: rbsdem.cyclic(one, displacement=way),
         "static, layered column, 3900 points": lambda: rbsdem.cyclic(layered, displacement=drifts),
-        "record, one body": lambda: rbsdem.time_history(
-            loaded, t, ground_acceleration=a, method="newmark", dt=0.005
-        ),
+        "record, one body": shake(loaded),
         "layered column, made from its drawing": make,
+        "layered column, band of 16 samples": lambda: rbsdem.peer.band(layered, drifts[::10]),
+        "first frequencies, 5000 bodies": lambda: rbsdem.modes(chain, 3),
+        single: together(
+            rbsdem.peer.paper_columns("pdelta")["soesianawati_1"], single, record_20_s()
+        ),
+        some: together(predicted(), some, record_20_s(), method="newmark"),
+        frames: together(modal, frames, record(), method="newmark", dt=0.005),
+        houses: together(drawn, houses, record(), dt=0.01),
     }
 
 
@@ -105,6 +146,10 @@ def opensees() -> dict[str, Callable[[], Any]]:
     for n in (3, 8):
         work[f"push-over, {n} x {n}"] = lambda n=n: study.pushed(n, n, [0.03 * n * 3.2], 300)
         work[f"record, {n} x {n}"] = lambda n=n: study.shaken(n, n, "pdelta", LOAD, t, a, 0.005)
+    damping = rbsdem.Damping(mass=0.3)
+    work["record, 3 x 3, fibres"] = lambda: study.recorded(
+        study.model_of_fibres(3, 3, 400e3), t, a, 0.005, damping
+    )
     return work
 
 
@@ -116,8 +161,9 @@ def times(pattern: str) -> dict[str, float]:
         if not re.search(pattern, name):
             continue
         found[name], _ = least(run, 1)
-        for _ in range(min(20, int(0.5 / found[name]))):
+        for _ in range(min(20, int(2.0 / found[name]))):
             found[name] = min(found[name], least(run, 1)[0])
+        found[name] /= RUNS.get(name, 1)
     return found
 
 

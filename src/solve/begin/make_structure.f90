@@ -64,6 +64,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
       type(modes_type) :: modes
+      real(wp), allocatable :: momenta(:, :)
       integer :: i, j
 
       if (.not. allocated(case%parts)) then
@@ -92,7 +93,10 @@ contains
       if (allocated(case%column%damping%modal)) then
          frame%damped = .true.
          frame%modal_damping = case%column%damping%modal
-         call find_modal_momenta(frame, frame%modal_momenta, error)
+         call find_modal_momenta(frame, momenta, error)
+         if (allocated(error)) return
+         frame%massed = pack([(j, j=1, frame%unknowns)], any(abs(momenta) > 0.0_wp, dim=2))
+         frame%modal_momenta = momenta(frame%massed, :)
       end if
       if (allocated(error) .or. case%frame%pattern /= 'modal') return
       call find_modes(frame, modes, error, modes_along)

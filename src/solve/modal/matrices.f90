@@ -84,8 +84,8 @@ contains
          call fill(band, matrices%damping)
          matrices%damping = matrices%damping + structure%mass_damping*matrices%mass
          if (.not. allocated(structure%modal_momenta)) return
-         associate (momenta => structure%modal_momenta)
-            matrices%damping = matrices%damping + matmul(momenta, transpose(momenta))
+         associate (momenta => structure%modal_momenta, at => structure%massed)
+            matrices%damping(at, at) = matrices%damping(at, at) + matmul(momenta, transpose(momenta))
          end associate
       end subroutine assemble_bands
 

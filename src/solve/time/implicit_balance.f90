@@ -482,22 +482,23 @@ contains
       call self%fit(step, state, h)
       dx = step%r
       call self%matrix%solve(dx, regular)
-      if (allocated(self%damped)) call damp_modes(state%motion%structure%modal_momenta)
+      associate (structure => state%motion%structure)
+         if (allocated(self%damped)) call damp_modes(structure%massed, structure%modal_momenta)
+      end associate
 
    contains
 
       !> Modal damping by Woodbury's formula. Its flexibility is that of the elastic structure, in which the
       !> modes are uncoupled; a trial leaves the little that yielding changes in this.
-      subroutine damp_modes(momenta)
+      subroutine damp_modes(massed, momenta)
+         integer, intent(in) :: massed(:)
          real(wp), intent(in) :: momenta(:, :)
-         real(wp) :: share(size(momenta, 2))
+         real(wp) :: moved(size(massed))
          integer :: j
 
-         do j = 1, size(share)
-            share(j) = inner_product(size(dx), momenta(:, j), dx)
-         end do
-         do j = 1, size(share)
-            dx = dx - share(j)*self%damped(:, j)
+         moved = dx(massed)
+         do j = 1, size(momenta, 2)
+            dx = dx - inner_product(size(moved), momenta(:, j), moved)*self%damped(:, j)
          end do
       end subroutine damp_modes
 
@@ -517,7 +518,7 @@ contains
       call step%fit_elements(state)
       associate (structure => state%motion%structure)
          if (allocated(structure%modal_momenta) .and. abs(h - self%factor_step) > equal_step*h) then
-            call damp_modes(structure%modal_momenta)
+            call damp_modes(structure%massed, structure%modal_momenta)
          end if
          call set_tangent(state%springs%k, step%now%tangent)
          if (allocated(self%initial)) call hold_free()
@@ -530,7 +531,8 @@ contains
    contains
 
       !> Motions by the momenta of the modes, in the elastic structure, times what damping leaves of them.
-      subroutine damp_modes(momenta)
+      subroutine damp_modes(massed, momenta)
+         integer, intent(in) :: massed(:)
          real(wp), intent(in) :: momenta(:, :)
          real(wp) :: of_damping
          logical :: regular
@@ -540,11 +542,13 @@ contains
          associate (structure => state%motion%structure)
             call set_tangent(structure%initial_stiffness, structure%initial_tangent)
          end associate
-         self%damped = momenta
+         if (.not. allocated(self%damped)) allocate (self%damped(size(step%r), size(momenta, 2)))
+         self%damped(:, :) = 0.0_wp
+         self%damped(massed, :) = momenta
          call self%matrix%solve(self%damped, regular)
          do j = 1, size(momenta, 2)
             associate (motion => self%damped(:, j))
-               motion = motion/(1.0_wp/of_damping + inner_product(size(motion), momenta(:, j), motion))
+               motion = motion/(1.0_wp/of_damping + sum(momenta(:, j)*motion(massed)))
             end associate
          end do
       end subroutine damp_modes

@@ -321,11 +321,7 @@ contains
       real(wp) :: s(3)
       integer :: i
 
-      if (allocated(self%modal_momenta)) then
-         do i = 1, size(self%modal_momenta, 2)
-            g = g - self%modal_momenta(:, i)*inner_product(size(v), self%modal_momenta(:, i), v)
-         end do
-      end if
+      if (allocated(self%modal_momenta)) call damp_modes(self%massed, self%modal_momenta, v, g)
       if (allocated(self%damping)) call self%damping%subtract_product(v, g)
       if (.not. self%tangent_damping) return
       do i = 1, size(tangent)
@@ -335,6 +331,23 @@ contains
          call add_end_forces(self%element(i), -self%stiffness_damping*s, g)
       end do
    end subroutine damp
+
+   !> Subtract the damping of the modes.
+   pure subroutine damp_modes(massed, momenta, v, g)
+      integer, intent(in) :: massed(:)
+      !> (unknowns with mass, modes)
+      real(wp), intent(in), contiguous :: momenta(:, :), v(:)
+      real(wp), intent(inout), contiguous :: g(:)
+      real(wp) :: speed(size(massed)), force(size(massed))
+      integer :: i
+
+      speed = v(massed)
+      force = 0.0_wp
+      do i = 1, size(momenta, 2)
+         force = force + momenta(:, i)*inner_product(size(speed), momenta(:, i), speed)
+      end do
+      g(massed) = g(massed) - force
+   end subroutine damp_modes
 
    subroutine add_damping(self, factor, tangent, band)
       class(frame_type), intent(in) :: self
@@ -372,16 +385,17 @@ contains
       type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(in), contiguous :: dx(:), k(:)
       real(wp), intent(inout), contiguous :: dd(:)
-      real(wp) :: largest(3), size_of(3)
+      real(wp) :: terms(3, size(self%element)), largest(3), size_of(3)
       integer :: i
 
       largest = 0.0_wp
       do i = 1, size(self%element)
-         largest = max(largest, motion_terms(self%element(i), dx))
+         terms(:, i) = motion_terms(self%element(i), dx)
+         largest = max(largest, terms(:, i))
       end do
       do i = 1, size(self%element)
          associate (e => self%element(i))
-            size_of = motion_terms(e, dx)
+            size_of = terms(:, i)
             ! The share of a layer in a motion may be as small without being round-off.
             if (.not. allocated(e%y)) size_of = max(size_of, of_all*largest)
             call drop_round_off(e, tangent(i), size_of, dd)
