@@ -115,9 +115,9 @@ class FrameMember:
                 )
         else:
             rigid = _arguments.number(rigid, "FrameMember: rigid_end")
-        _arguments.put(self, rigid_end=rigid)
-        for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
-            _arguments.put(self, **{name: _by_position(getattr(self, name), name, usual)})
+        springs = _by_position(self.flexure, "flexure", (0.0, 1.0))
+        slips = _by_position(self.shear, "shear", (0.5,))
+        _arguments.put(self, rigid_end=rigid, flexure=springs, shear=slips)
 
     @classmethod
     def rigid(cls, **more: Any) -> FrameMember:
@@ -191,8 +191,8 @@ def _by_position(
         return None
     if isinstance(stated, Mapping):
         springs = [
-            (_arguments.number(position, f"FrameMember: {name}"), spring)
-            for position, spring in stated.items()
+            (at if type(at) is float else _arguments.number(at, f"FrameMember: {name}"), spring)
+            for at, spring in stated.items()
         ]
     elif isinstance(stated, Spring):
         springs = [(position, stated) for position in usual]

@@ -390,10 +390,10 @@ class Grid:
                 columns[i, k] = walls[i, k]
                 continue
             place = self.storeys[k - 1], ends["columns"][i, k], load[i, k], 0.0
-            columns[i, k] = _kind(one, *place, Place("column", i, k).name, spans.get((i, k)))
+            columns[i, k] = _kind(one, *place, Place("column", i, k), spans.get((i, k)))
         for (i, k), one in self.beams.items():
             place = self.bays[i - 1], ends["beams"][i, k], 0.0, loads[i, k]
-            beams[i, k] = _kind(one, *place, Place("beam", i, k).name)
+            beams[i, k] = _kind(one, *place, Place("beam", i, k))
         return list(self.kinds)
 
     def loads_of_beams(self, given: Any) -> dict[tuple[int, int], float]:
@@ -679,7 +679,7 @@ def _kind(
     ends: tuple[float, float],
     load: float,
     span_load: float,
-    name: str,
+    where: Place,
     spans: tuple[Pair, Pair] | None = None,
 ) -> FrameMember | None:
     if not is_drawn(one):
@@ -687,12 +687,13 @@ def _kind(
     clear = length - sum(ends)
     if not clear > 0:
         raise InputError(
-            f"frame: member {name} of {length:g} m has rigid ends of {sum(ends):g} m, and no length"
+            f"frame: member {where.name} of {length:g} m has rigid ends of {sum(ends):g} m, and no "
+            "length"
         )
     try:
         return _made(halves_of(one), clear, load, span_load, spans, ends)
     except InputError as error:
-        raise InputError(f"frame: member {name}: {error}") from None
+        raise InputError(f"frame: member {where.name}: {error}") from None
 
 
 @lru_cache(maxsize=1024)

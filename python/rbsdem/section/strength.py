@@ -468,7 +468,6 @@ def _capped(load: Array, moment: Array, most: float) -> tuple[Array, Array]:
     return np.append(load[:at], [most, most]), np.append(moment[:at], [edge, 0.0])
 
 
-_MPA = 1.0e6
 # Share of the least ties from which on the crack spacing goes over to that of tied sections.
 _NEARLY = 0.9
 #: Shear span of columns over effective depth, below which an arch carries.
@@ -567,7 +566,7 @@ def shear_strength(section: Section, length: float, axial_load: float) -> float:
         If a value is refused.
     """
     load = carried_load(checked_load(section, axial_load), section)
-    return shear_strength_mcft(section, length, load)
+    return shear_strength_mcft(section, column_length(length, "length"), load)
 
 
 def shear_strength_mcft(
@@ -608,11 +607,6 @@ def shear_strength_mcft(
     float
         V_n [N], at most 0.25 f'c b z.
 
-    Raises
-    ------
-    InputError
-        If the length is not positive.
-
     Notes
     -----
     Bentz, Vecchio, Collins 2006 (ACI Structural Journal 103(4)). With ties of at least
@@ -620,7 +614,6 @@ def shear_strength_mcft(
     from 0.9 of those ties on it goes from one to the other in a straight line.
     """
     sizes = shear_sizes(section)
-    span = column_length(length, "length")
     if not section.bars:
         return 0.0
     z = 0.9 * sizes.d
@@ -629,7 +622,7 @@ def shear_strength_mcft(
     s_ze = max(35.0 * z * 1e3 / (16.0 + aggregate * 1e3), 0.85 * z * 1e3)
     tied = min(max((sizes.tie_ratio / least - _NEARLY) / (1.0 - _NEARLY), 0.0), 1.0)
     s_ze += tied * (300.0 - s_ze)
-    arm = max(span - sizes.d, sizes.d)
+    arm = max(length - sizes.d, sizes.d)
     d, width, pressed = sizes.d, sizes.width, 0.5 * axial_load
     # The strength has a limit where bars in tension vanish.
     steel = 2.0 * _ES * max(sizes.tension_steel, 1e-9 * sizes.gross_area)
@@ -871,18 +864,17 @@ def shear_strength_sezen(
     Raises
     ------
     InputError
-        If the length is not positive or the ductility negative.
+        If the ductility is negative.
 
     Notes
     -----
     Sezen, Moehle 2004 (ASCE Journal of Structural Engineering 130(11)).
     """
     sizes = shear_sizes(section)
-    span = column_length(length, "length")
     if not ductility >= 0.0:
         raise InputError(f"shear strength: ductility = {ductility} must not be negative")
     tensile = 0.5 * math.sqrt(sizes.fc / _MPA) * _MPA
-    slender = min(max(span / sizes.d, 2.0), 4.0)
+    slender = min(max(length / sizes.d, 2.0), 4.0)
     pressed = math.sqrt(max(1.0 + axial_load / (tensile * sizes.gross_area), 0.0))
     v_c = tensile / slender * pressed * 0.8 * sizes.gross_area
     v_s = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
