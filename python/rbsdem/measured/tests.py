@@ -97,30 +97,6 @@ class MeasuredTest(Tabular):
         return self.force * self.length + self.axial_load * lever * self.displacement
 
 
-def top_displacement(
-    displacement: ArrayLike, *, length: float, measured_length: float | None = None
-) -> Array:
-    """Return the displacement of the top from the measured one.
-
-    Parameters
-    ----------
-    displacement : array_like, shape (m,)
-        As in the file [m].
-    length : float
-        Of the equivalent cantilever [m].
-    measured_length : float, optional
-        Height at which the displacement was measured [m]; by default the length.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        d L/L_meas [m], as in the manual's rules for P-Delta: the column stays straight above its
-        hinge.
-    """
-    d = _arguments.finite_vector(displacement, "displacement")
-    return d * (length / (measured_length or length))
-
-
 def net_force(
     displacement: ArrayLike,
     force: ArrayLike,
@@ -224,7 +200,8 @@ def measured_test(
         raise InputError(f"{who}: {error}") from error
     top = displacement.copy()
     if not math.isnan(length):
-        top = top_displacement(displacement, **levers)
+        # As in the manual's rules for P-Delta: the column stays straight above its hinge.
+        top = displacement * (length / (measured_length or length))
     above = 0.0 if code == 4 else top_length or 0.0
     columns = top, net, displacement, force
     return MeasuredTest(name, *columns, length, axial_load, code, length + above)
