@@ -31,7 +31,6 @@ BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
 TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 COLUMN = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA)
 ELASTIC = "rule = 'elastic', k = 7e8"
-PROTOCOL = "drive = 'displacement', amplitudes = "
 WEAK = "rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 0"
 CAPACITY = 7.0387e8 * 1.296e-4  # of the weak spring
 

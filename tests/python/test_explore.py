@@ -40,9 +40,7 @@ from rbsdem.web.state import DEFAULT, building
 COUNT = itertools.count(1)
 
 
-#: A footing on springs, of 4 t.
-FOOTING = {"rotation": 1e8, "sliding": 1e9, "height": 0.6, "mass": 4e3}
-#: How the first column of the page is held at its foot in `state(footing=True)`.
+#: Of the footing of 4 t of `state(footing=True)`, on springs.
 _INERTIA = 4e3 * (4e3 / (2400 * 0.6) + 0.36) / 12
 PATH = {"drive": "displacement", "unit": "drift", "amplitudes": [0.005, 0.02]}
 QUAKE = {"drive": "ground_acceleration"}
