@@ -724,7 +724,7 @@ def long_run(dynamic_text, tmp_path):
     long_case(dynamic_text, tmp_path)
 
 
-def unfinished(process: subprocess.Popen, folder: Path, name: str = "case.csv") -> Path:
+def unfinished(folder: Path, name: str = "case.csv") -> Path:
     """The name of the rows of a process until they are whole."""
     return folder / f"{name}.1.partial"
 
@@ -759,7 +759,7 @@ def on_terminal(
         )
         os.close(inner)
         for size, pause in stops:
-            stopped(process, unfinished(process, cwd), size, pause)
+            stopped(process, unfinished(cwd), size, pause)
         text = b""
         while select.select([terminal], [], [], PATIENCE)[0]:
             try:
@@ -798,7 +798,7 @@ def test_progress_stays_away_in_a_pipe_with_quiet_and_in_short_runs(
         [executable, "run", "case.nml"], cwd=tmp_path, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    stopped(process, unfinished(process, tmp_path), 50_000, SHOWN_AFTER)
+    stopped(process, unfinished(tmp_path), 50_000, SHOWN_AFTER)
     out, error = process.communicate(timeout=PATIENCE)
     assert (process.returncode, error) == (0, "")
     assert "\r" not in out
@@ -819,7 +819,7 @@ def test_stopped_run_keeps_its_rows_and_the_old_output(executable, long_run, tmp
     process = subprocess.Popen(
         [executable, "run", "case.nml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )
-    own = unfinished(process, tmp_path)
+    own = unfinished(tmp_path)
     wait_for(own, 50_000)
     process.send_signal(number)
     _, told = process.communicate(timeout=PATIENCE)
