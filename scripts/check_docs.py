@@ -2,12 +2,13 @@
 
     python scripts/check_docs.py [FILE.md ...]
 
-In the Markdown files of docs (README.md of the project too, if named):
+In README.md and the Markdown files of docs:
 
 - a block after ``<!-- file: NAME -->`` is written to a file of that name in a scratch folder;
 - a block of language ``console`` is run there, line by line that begins with ``$``, and the output
   (both streams) must be what stands below it; ``...`` stands for anything within a line;
-- a block of language ``python`` is run there with this interpreter and must not fail;
+- a block of language ``python`` is run there with this interpreter and must not fail; if a block of
+  language ``text`` follows at once, that is what it prints;
 - a block after ``<!-- skip -->`` is left alone;
 - a name of a test (``test_...``, or its begin with an ellipsis) must be that of one.
 
@@ -139,7 +140,8 @@ def check(path: Path, folder: Path) -> list[str]:
     """Run the blocks of one file; return what went wrong."""
     faults = []
     text = path.read_text(encoding="utf-8")
-    for block in BLOCK.finditer(text):
+    blocks = list(BLOCK.finditer(text))
+    for block, following in zip(blocks, [*blocks[1:], None], strict=True):
         line = text.count("\n", 0, block.start("body"))
         body = block["body"]
         if block["mark"] == "skip":
@@ -152,7 +154,17 @@ def check(path: Path, folder: Path) -> list[str]:
             code, output = run([sys.executable, "-W", "error", "-c", body], folder)
             if code:
                 faults.append(f"{path.name}:{line}: exit code {code}\n{output}")
+            elif following and following["language"] == "text" and not following["mark"]:
+                printed = following["body"]
+                if not text[block.end() : following.start()].strip() and not same(printed, output):
+                    faults.append(f"{path.name}:{line}: prints\n{output}--- in place of\n{printed}")
     return faults
+
+
+def same(printed: str, output: str) -> bool:
+    """Return whether an output is the printed one; ``...`` there stands for anything in a line."""
+    pattern = ".*".join(re.escape(piece) for piece in printed.rstrip("\n").split("..."))
+    return bool(re.fullmatch(pattern, output.rstrip("\n")))
 
 
 def console(body: str, folder: Path, place: str) -> list[str]:
@@ -165,8 +177,7 @@ def console(body: str, folder: Path, place: str) -> list[str]:
             output = f"{code}\n"
         else:
             code, output = run(["bash", "-c", command], folder)
-        pattern = ".*".join(re.escape(piece) for piece in expected.rstrip("\n").split("..."))
-        if not re.fullmatch(pattern, output.rstrip("\n")):
+        if not same(expected, output):
             faults.append(f"{place}: $ {command}\n--- printed\n{expected}--- found\n{output}")
     return faults
 
@@ -194,7 +205,9 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
 
 def main() -> int:
     """Check all files; return 1 if an example does not do what it says."""
-    paths = [Path(name) for name in sys.argv[1:]] or sorted((ROOT / "docs").glob("*.md"))
+    paths = [Path(name) for name in sys.argv[1:]] or [
+        ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))
+    ]  # fmt: skip
     faults = [] if sys.argv[1:] else check_names()
     source = tests()
     for path in paths:

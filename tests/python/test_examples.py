@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 import shutil
@@ -86,19 +85,6 @@ def test_example_without_figures(tmp_path):
     script = REPOSITORY / "examples" / "02-cyclic-protocol" / "case.py"
     assert run([sys.executable, script, "--no-plot"], tmp_path).strip()
     assert not list(tmp_path.iterdir())
-
-
-def test_python_blocks_of_the_readme_print_what_stands_below_them(tmp_path):
-    text = (REPOSITORY / "README.md").read_text("utf-8")
-    blocks = [*BLOCK.findall(text), ("", "")]
-    programs = [pair for pair in itertools.pairwise(blocks) if pair[0][0] == "python"]
-    assert any(5 <= len(block.strip().splitlines()) <= 15 for (_, block), _ in programs)
-    for (_, block), (language, printed) in programs:
-        assert "import rbsdem" in block
-        assert language == "text", f"no output below\n{block}"
-        path = tmp_path / "block.py"
-        path.write_text(block, "utf-8")
-        assert run([sys.executable, "-W", "error", path], tmp_path) == printed
 
 
 def test_numbers_of_the_readme_stand_in_the_pages_it_names():
