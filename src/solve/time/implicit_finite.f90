@@ -273,7 +273,7 @@ contains
          real(wp) :: finish, mean, moved
          integer :: i
 
-         call find_damping(self, state)
+         self%viscous(:) = state%motion%viscous(state%springs%k, state%motion%joint_damping)
          associate (springs => state%springs, h => self%h)
             do i = 1, size(self%f)
                finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
@@ -329,18 +329,6 @@ contains
       end do
    end subroutine locate_end
 
-   !> Damping of the joints on their present lines.
-   subroutine find_damping(self, state)
-      type(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-
-      if (self%column%tangent_damping) then
-         self%viscous(:) = self%column%stiffness_damping*max(state%springs%k, 0.0_wp)
-      else if (state%motion%damped) then
-         self%viscous(:) = state%motion%joint_damping
-      end if
-   end subroutine find_damping
-
    !> Forces on the bodies at one state.
    subroutine find_forces_at(self, state, q, v, load, h, g)
       type(finite_stepper), intent(inout) :: self
@@ -350,7 +338,7 @@ contains
       real(wp), intent(in) :: load(signals), h
       real(wp), intent(out) :: g(:, 0:)
 
-      call find_damping(self, state)
+      self%viscous(:) = state%motion%viscous(state%springs%k, state%motion%joint_damping)
       self%f = state%springs%f0 + state%springs%k*(q - state%springs%d0) + self%viscous*v
       self%k = state%springs%k + self%viscous*(self%by%gamma/(self%by%beta*h))
       if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
@@ -411,14 +399,14 @@ contains
       end associate
    end subroutine add_loads
 
-   !> The correction that takes the residual away as far as the step is linear.
+   !> The correction that takes the residual away as far as the step is linear. The three displacements of a
+   !> body end at `last`; before them is the axial force of its joint, if that does not open.
    subroutine correct(self, state)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp) :: damping, of_mass, share, per_force
-      integer :: i, j, l, n
+      integer :: i, last
 
-      n = self%column%n
       damping = merge(self%column%mass_damping, 0.0_wp, state%motion%damped)
       share = 1.0_wp
       associate (by => self%by, h => self%h)
@@ -432,25 +420,24 @@ contains
       ! The axial forces in units that make both kinds of equations alike.
       per_force = of_mass*maxval(self%column%mass)
       self%band = 0.0_wp
-      do i = 1, n
+      do i = 1, self%column%n
          call add_joint_tangent(self, i, share, per_force)
       end do
-      associate (main => 2*self%half_width + 1, last => self%per*n)
-         do i = 1, n
-            do j = 1, 3
-               l = self%per*i - 3 + j
-               self%band(main, l) = self%band(main, l) + of_mass*self%mass(j, i)
-               self%right(l, 1) = self%r(j, i)
-            end do
-            if (.not. self%column%opens) self%right(l - 3, 1) = -per_force*self%opening(i)
+      associate (main => self%band(2*self%half_width + 1, :), right => self%right(:, 1))
+         do i = 1, self%column%n
+            last = self%per*i
+            main(last - 2:last) = main(last - 2:last) + of_mass*self%mass(:, i)
+            right(last - 2:last) = self%r(:, i)
+            if (.not. self%column%opens) right(last - 3) = -per_force*self%opening(i)
          end do
-         self%band(main, last) = self%band(main, last) - share*self%load_rate
+         main(last) = main(last) - share*self%load_rate
       end associate
       call solve_general_band(self%band, self%half_width, self%half_width, self%right, self%regular, &
                               self%pivot)
-      do i = 1, n
-         self%dx(:, i) = self%right(self%per*i - 2:self%per*i, 1)
-         if (.not. self%column%opens) self%dn(i) = per_force*self%right(self%per*i - 3, 1)
+      do i = 1, self%column%n
+         last = self%per*i
+         self%dx(:, i) = self%right(last - 2:last, 1)
+         if (.not. self%column%opens) self%dn(i) = per_force*self%right(last - 3, 1)
       end do
       if (self%regular) self%regular = maxval(abs(self%dx(3, :))) < most_rotation
    end subroutine correct

@@ -42,6 +42,7 @@ module rbs_solve_time_motion
    contains
       procedure :: create, acceleration, forces_on_bodies, joint_forces, set_axial_loads, damping_power
       procedure :: base_shear
+      procedure, non_overridable :: viscous
    end type equation_of_motion
 
 contains
@@ -161,13 +162,19 @@ contains
          end do
       end if
       if (.not. self%springs_damp) return
-      if (self%structure%tangent_damping) then
-         f = f + self%structure%spring_damping*max(springs%k, 0.0_wp)*v
-      else
-         f = f + self%joint_damping*v
-      end if
+      f = f + viscous(self, springs%k, self%joint_damping)*v
       if (allocated(self%modal)) f = f + modal_forces(size(v), self%modal, v)
    end subroutine add_to_springs
+
+   !> Damping of a spring [N s/m, N m s] by its present or its initial stiffness; one that softens damps
+   !> nothing.
+   elemental real(wp) function viscous(self, k, initial)
+      class(equation_of_motion), intent(in) :: self
+      !> Stiffness of its line, and its damping on the initial one
+      real(wp), intent(in) :: k, initial
+
+      viscous = merge(self%structure%spring_damping*max(k, 0.0_wp), initial, self%structure%tangent_damping)
+   end function viscous
 
    !> Forces of the modal damping.
    pure function modal_forces(m, modal, v) result(f)
@@ -206,13 +213,7 @@ contains
       watt = 0.0_wp
       if (.not. self%damped) return
       associate (structure => self%structure)
-         if (self%springs_damp) then
-            if (structure%tangent_damping) then
-               watt = structure%spring_damping*sum(max(springs%k, 0.0_wp)*v**2)
-            else
-               watt = sum(self%joint_damping*v**2)
-            end if
-         end if
+         if (self%springs_damp) watt = sum(viscous(self, springs%k, self%joint_damping)*v**2)
          if (allocated(self%modal)) then
             watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
          end if
@@ -243,11 +244,7 @@ contains
          else
             force = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
             if (self%damped) then
-               if (structure%tangent_damping) then
-                  force = force + structure%spring_damping*max(springs%k(i), 0.0_wp)*v(i)
-               else
-                  force = force + self%joint_damping(i)*v(i)
-               end if
+               force = force + viscous(self, springs%k(i), self%joint_damping(i))*v(i)
                ! The matrix is symmetric: its columns lie together.
                if (allocated(self%modal)) force = force + inner_product(size(v), self%modal(:, i), v)
             end if

@@ -25,9 +25,7 @@ contains
    subroutine check_values(record, messages)
       type(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: name, from
-      integer :: i, j, known, kind
-      logical :: within
+      integer :: i
 
       call record%check('frame', messages)
       do i = 1, size(record%plane)
@@ -43,6 +41,38 @@ contains
       do i = 1, size(record%node_load)
          call record%node_load(i)%check('node_load', messages)
       end do
+      call check_kinds(record, messages)
+      do i = 1, size(record%column_of)
+         call record%column_of(i)%check('column_of', messages)
+      end do
+      do i = 1, size(record%beam_of)
+         call record%beam_of(i)%check('beam_of', messages)
+      end do
+      call check_infills(record, messages)
+      do i = 1, size(record%node)
+         if (record%node(i)%name == '') call messages%add('node: the name is missing; give each a name')
+         call record%node(i)%check("node '"//trim(record%node(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%member)
+         if (record%member(i)%name == '') call messages%add('member: the name is missing; give each a name')
+         call record%member(i)%check("member '"//trim(record%member(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%loss)
+         call record%loss(i)%check('loss', messages)
+         if (any(record%loss(:i - 1)%member == record%loss(i)%member)) then
+            call messages%add("loss: member '"//trim(record%loss(i)%member)//"' is lost twice; remove one")
+         end if
+      end do
+      do i = 1, size(record%spring)
+         call check_spring(record%spring(i), record%kind%name, messages)
+      end do
+   end subroutine check_values
+
+   subroutine check_kinds(record, messages)
+      type(frame_record), intent(inout) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: i, known
+
       do i = 1, size(record%kind)
          associate (k => record%kind(i))
             known = messages%count
@@ -54,19 +84,18 @@ contains
             end if
             call k%check("member_kind '"//trim(k%name)//"'", messages)
             if (messages%count == known) call check_kind(record, k, messages)
-            do j = 1, i - 1
-               if (record%kind(j)%name == k%name) then
-                  call messages%add("member_kind '"//trim(k%name)//"' is given twice; remove one")
-               end if
-            end do
+            if (any(record%kind(:i - 1)%name == k%name)) then
+               call messages%add("member_kind '"//trim(k%name)//"' is given twice; remove one")
+            end if
          end associate
       end do
-      do i = 1, size(record%column_of)
-         call record%column_of(i)%check('column_of', messages)
-      end do
-      do i = 1, size(record%beam_of)
-         call record%beam_of(i)%check('beam_of', messages)
-      end do
+   end subroutine check_kinds
+
+   subroutine check_infills(record, messages)
+      type(frame_record), intent(inout) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
       do i = 1, size(record%infill)
          associate (infill => record%infill(i), name => "infill '"//trim(record%infill(i)%name)//"'")
             call infill%check(name, messages)
@@ -86,63 +115,56 @@ contains
       do i = 1, size(record%infill_of)
          call record%infill_of(i)%check('infill_of', messages)
       end do
-      do i = 1, size(record%node)
-         if (record%node(i)%name == '') call messages%add('node: the name is missing; give each a name')
-         call record%node(i)%check("node '"//trim(record%node(i)%name)//"'", messages)
-      end do
-      do i = 1, size(record%member)
-         if (record%member(i)%name == '') call messages%add('member: the name is missing; give each a name')
-         call record%member(i)%check("member '"//trim(record%member(i)%name)//"'", messages)
-      end do
-      do i = 1, size(record%loss)
-         call record%loss(i)%check('loss', messages)
-         if (any(record%loss(:i - 1)%member == record%loss(i)%member)) then
-            call messages%add("loss: member '"//trim(record%loss(i)%member)//"' is lost twice; remove one")
-         end if
-      end do
-      do i = 1, size(record%spring)
-         associate (s => record%spring(i))
-            call s%spring%where_given(from)
-            kind = findloc(group_of == s%group, .true., dim=1)
-            name = from//trim(place_of(kind))//' spring of '
-            if (count([s%kind, s%node, s%panel] /= '') /= 1) then
-               call messages%add(from//'&'//trim(s%group)//': a spring of a frame belongs to a kind of '// &
-                                 'members, stands between a node and the ground, or is in the panel of a '// &
-                                 'node; give kind, node or panel')
-               cycle
-            else if (s%kind /= '') then
-               name = name//"member_kind '"//trim(s%kind)//"'"
-               call check_reference(s%kind, [record%kind%name], name, 'kind', messages)
-            else
-               name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
-            end if
-            if (s%panel /= '' .and. s%group /= 'flexure') then
-               call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
-            end if
-            if (s%spring%rule == 'layered' .and. s%kind == '') then
-               call messages%add(name//': a joint of layers stands in a member; take a rule for the '// &
-                                 'moment alone, such as takeda or peak_oriented')
-               cycle
-            end if
-            call s%spring%validate(name, messages)
-            if (all(rule_names /= s%spring%rule)) then
-               cycle                                ! reported by the spring
-            else if (.not. suits(s%spring%rule, place_of(kind))) then
-               call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
-                                 list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
-            end if
-            if (s%kind == '' .and. allocated(s%position)) then
-               call messages%add(name//': position is for springs of members; remove it')
-            else if (allocated(s%position)) then
-               within = all(ieee_is_finite(s%position))
-               if (within) within = all(s%position >= 0.0_wp .and. s%position <= 1.0_wp)
-               if (.not. within) then
-                  call messages%add(name//': position is a share of the clear length, from 0 to 1')
-               end if
-            end if
-         end associate
-      end do
-   end subroutine check_values
+   end subroutine check_infills
+
+   !> A spring stands in one place, where its rule may be used.
+   subroutine check_spring(s, kinds, messages)
+      type(frame_spring), intent(inout) :: s
+      !> Names of the kinds of members
+      character(len=*), intent(in) :: kinds(:)
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name, from
+      integer :: kind
+      logical :: within
+
+      call s%spring%where_given(from)
+      kind = findloc(group_of == s%group, .true., dim=1)
+      name = from//trim(place_of(kind))//' spring of '
+      if (count([s%kind, s%node, s%panel] /= '') /= 1) then
+         call messages%add(from//'&'//trim(s%group)//': a spring of a frame belongs to a kind of '// &
+                           'members, stands between a node and the ground, or is in the panel of a node; '// &
+                           'give kind, node or panel')
+         return
+      else if (s%kind /= '') then
+         name = name//"member_kind '"//trim(s%kind)//"'"
+         call check_reference(s%kind, kinds, name, 'kind', messages)
+      else
+         name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
+      end if
+      if (s%panel /= '' .and. s%group /= 'flexure') then
+         call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
+      end if
+      if (s%spring%rule == 'layered' .and. s%kind == '') then
+         call messages%add(name//': a joint of layers stands in a member; take a rule for the moment '// &
+                           'alone, such as takeda or peak_oriented')
+         return
+      end if
+      call s%spring%validate(name, messages)
+      ! A rule that is not known is reported by the spring.
+      if (all(rule_names /= s%spring%rule)) return
+      if (.not. suits(s%spring%rule, place_of(kind))) then
+         call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
+                           list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
+      end if
+      if (.not. allocated(s%position)) return
+      if (s%kind == '') then
+         call messages%add(name//': position is for springs of members; remove it')
+         return
+      end if
+      within = all(ieee_is_finite(s%position))
+      if (within) within = all(s%position >= 0.0_wp .and. s%position <= 1.0_wp)
+      if (.not. within) call messages%add(name//': position is a share of the clear length, from 0 to 1')
+   end subroutine check_spring
 
    !> A kind is elastic, yields at its points, or has springs of its own.
    subroutine check_kind(record, kind, messages)
