@@ -5,15 +5,18 @@ module rbs_solve_begin_make_structure
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_case_record, only: case_record
+   use rbs_hysteresis_layered_layered_joint, only: check_axial_load
    use rbs_solve_end_state, only: end_state, stamp_of
-   use rbs_solve_begin_make_column, only: make_column
    use rbs_solve_modal_matrices, only: find_modal_momenta
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_dead_load, only: put_dead_load
    use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_column_record, only: column_record
+   use rbs_structure_column_new_column, only: new_column
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_new_frame, only: new_frame
+   use rbs_structure_spring_location, only: flexure
    use rbs_structure_structure, only: structure_type, small, pdelta, lateral, horizontal, sideways
    implicit none
    private
@@ -56,6 +59,32 @@ contains
          if (.not. allocated(error)) call move_alloc(column, structure)
       end if
    end subroutine make_structure
+
+   !> Validate a column and make it.
+   subroutine make_column(spec, column, error)
+      type(column_record), intent(inout) :: spec
+      class(column_type), allocatable, intent(out) :: column
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+      character(len=:), allocatable :: text
+      integer :: i
+
+      call spec%validate(messages)
+      call messages%raise(error)
+      if (allocated(error)) return
+      call new_column(column, spec)
+      do i = 1, column%n
+         associate (at => column%at(flexure, i))
+            if (column%rules%name(column%rules%of(at)) /= 'layered') cycle
+            call check_axial_load(column%rules%list(column%rules%of(at))%rule, column%constant_axial(at), &
+                                  text)
+         end associate
+         if (text == '') cycle
+         call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(spec%joint_number(i))// &
+                          ': '//text)
+         return
+      end do
+   end subroutine make_column
 
    subroutine make_frame(case, frame, before, error)
       type(case_record), intent(inout) :: case
