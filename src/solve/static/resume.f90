@@ -188,9 +188,7 @@ contains
       pure real(wp) function measure_of(a, b)
          real(wp), intent(in) :: a(:), b(:)
 
-         associate (m => path%springs%count)
-            measure_of = sum(path%structure%initial_stiffness*a(:m)*b(:m))
-         end associate
+         measure_of = sum(path%structure%initial_stiffness*a(:path%springs%count)*b(:path%springs%count))
       end function measure_of
 
    end subroutine settle
@@ -212,11 +210,10 @@ contains
       if (varies) then
          checkpoint%axial_force = path%load_now + path%structure%axial_force_ratio*path%force &
                           + (path%structure%constant_axial - path%structure%axial_load)
-         associate (layered => path%springs%layered)
-            if (path%springs%axial_load_varies) then
-               checkpoint%axial_force(layered) = path%springs%reference_axial_load(layered)
-            end if
-         end associate
+         if (path%springs%axial_load_varies) then
+            checkpoint%axial_force(path%springs%layered) = &
+               path%springs%reference_axial_load(path%springs%layered)
+         end if
       end if
       allocate (checkpoint%v(path%structure%coordinates), source=0.0_wp)
       checkpoint%input = path%work

@@ -36,6 +36,7 @@ contains
       class(structure_type), pointer :: loaded
       type(equilibrium_type) :: equilibrium
       real(wp) :: load(size(target)), factor
+      integer :: i
       logical :: varies
 
       call check_values(target, trim(merge('force       ', 'displacement', by_force)), error)
@@ -64,12 +65,10 @@ contains
          call equilibrium%create(loaded, .false.)
          call trace_straight(loaded, equilibrium, by_force, target, task, error)
          if (allocated(error) .and. equilibrium%unstable > 0) then
-            associate (location => structure%location)
-               error%message = error%message//'. Member '// &
-                               trim(location(findloc(location%member, equilibrium%unstable, dim=1))%owner)// &
-                               ' snaps back: its springs soften faster than the rest of it gives back; '// &
-                               'give it a softer rest, or springs that soften less'
-            end associate
+            i = findloc(structure%location%member, equilibrium%unstable, dim=1)
+            error%message = error%message//'. Member '//trim(structure%location(i)%owner)// &
+                            ' snaps back: its springs soften faster than the rest of it gives back; '// &
+                            'give it a softer rest, or springs that soften less'
          end if
       end if
       if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then

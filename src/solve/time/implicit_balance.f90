@@ -222,11 +222,11 @@ contains
 
       if (state%springs%version == self%version .and. &
           .not. abs(self%resistance - self%resistance_in) > 0.0_wp) return
-      associate (structure => state%motion%structure)
-         self%k = state%springs%k
-         if (self%resistance > 0.0_wp) self%k = self%k + self%resistance*structure%initial_stiffness
-         call structure%linearise(self%k, self%now%tangent, unstable, self%shares)
-      end associate
+      self%k = state%springs%k
+      if (self%resistance > 0.0_wp) then
+         self%k = self%k + self%resistance*state%motion%structure%initial_stiffness
+      end if
+      call state%motion%structure%linearise(self%k, self%now%tangent, unstable, self%shares)
       self%version = state%springs%version
       self%resistance_in = self%resistance
    end subroutine fit_elements
@@ -240,11 +240,11 @@ contains
 
       self%load = load
       call self%fit_elements(state)
-      associate (structure => state%motion%structure)
-         call end_of_step(self, h)
-         if (state%motion%springs_damp) call structure%spring_rates(self%now%tangent, self%v1, self%w1)
-         call find_forces(state, self%q1, self%w1, self%v1, load, self%damping_tangent, self%now, self%g1)
-      end associate
+      call end_of_step(self, h)
+      if (state%motion%springs_damp) then
+         call state%motion%structure%spring_rates(self%now%tangent, self%v1, self%w1)
+      end if
+      call find_forces(state, self%q1, self%w1, self%v1, load, self%damping_tangent, self%now, self%g1)
       self%known = .false.
       call compare(self, state, relative)
    end subroutine find_residual

@@ -116,15 +116,13 @@ contains
                end if
                ends = task%summary%lost_joint > 0 .or. state%monitor%collapsed
                ! A joint may have lost its axial load, or the column may have collapsed, within the step.
-               associate (at => state%begin + state%time)
-                  if (ends .and. at < state%clock - same_step*h) state%clock = at
-               end associate
+               if (ends .and. state%begin + state%time < state%clock - same_step*h) then
+                  state%clock = state%begin + state%time
+               end if
                state%time = state%clock - state%begin
                call remove_members()
                call state%update_monitor(state%clock)
-               associate (monitor => state%monitor)
-                  monitor%collapsed = monitor%collapsed .or. state%motion%structure%has_collapsed(state%q)
-               end associate
+               if (state%motion%structure%has_collapsed(state%q)) state%monitor%collapsed = .true.
                ends = ends .or. state%monitor%collapsed
                if (task%summary%lost_joint > 0) call fall_of(state%springs, crushed_joint, task%summary%fall)
                if (ends .or. part == parts) call balance(state, response%energy, task%summary)
@@ -245,13 +243,11 @@ contains
       summary%snap_time = state%snap_time
       before = trim(summary%remark)
       if (before /= '') before = '; '//before
-      associate (structure => state%motion%structure)
-         summary%remark = 'members snapped from one equilibrium to another in '//to_text(state%snaps)// &
-                          ' step(s), which lost '//to_text(state%in_snaps)//' J; the most, '// &
-                          to_text(state%largest_snap)//' J, was lost at time '//to_text(state%snap_time)// &
-                          ' s, where '//trim(spring_name(structure%location(state%snap_spring)))// &
-                          ' moved farthest'//before
-      end associate
+      summary%remark = 'members snapped from one equilibrium to another in '//to_text(state%snaps)// &
+                       ' step(s), which lost '//to_text(state%in_snaps)//' J; the most, '// &
+                       to_text(state%largest_snap)//' J, was lost at time '//to_text(state%snap_time)// &
+                       ' s, where '//trim(spring_name(state%motion%structure%location(state%snap_spring)))// &
+                       ' moved farthest'//before
    end subroutine report_snaps
 
    !> Times that are multiples of one step differ by it up to round-off; the steps are then equal to the last

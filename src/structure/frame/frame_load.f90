@@ -93,9 +93,7 @@ contains
       if (self%tangent_damping .or. .not. self%stiffness_damping > 0.0_wp) return
       band = 0.0_wp
       do i = 1, size(self%element)
-         associate (k => self%initial_tangent(i)%stiffness)
-            call add_band(self%element(i), self%stiffness_damping*k, band)
-         end associate
+         call add_band(self%element(i), self%stiffness_damping*self%initial_tangent(i)%stiffness, band)
       end do
       self%damping = sparse_of(band)
    end procedure set_damping

@@ -193,9 +193,7 @@ contains
       type(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: f(:)
 
-      associate (first => self%member_springs + 1)
-         force = sum(f(first:), mask=self%location(first:)%kind == shear)
-      end associate
+      force = sum(f(self%member_springs + 1:), mask=self%location(self%member_springs + 1:)%kind == shear)
    end function ground_force
 
 end submodule rbs_structure_frame_frame_rows
