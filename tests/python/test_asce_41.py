@@ -52,6 +52,9 @@ def test_a_column_of_500_mm():
     assert asce_41.column_stiffness(0.2) == pytest.approx(0.4)
     turned = asce_41.column_rotations(0.3, 0.01, 0.3, 50.0, 525.0)
     assert (turned.a, turned.b, turned.c) == pytest.approx((0.0285, 0.0483333, 0.12), abs=1e-7)
+    assert turned.io == pytest.approx(0.15 * 0.0285)
+    # a = 0.044125: immediate occupancy ends at 0.005
+    assert asce_41.column_rotations(0.1, 0.0175, 0.2, 50.0, 525.0).io == 0.005
 
 
 @pytest.mark.parametrize(

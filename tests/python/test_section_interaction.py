@@ -62,6 +62,20 @@ def test_ec_2_ends_and_pure_bending_in_closed_form():
         assert diagram.moment_at(0.0, design=design) == pytest.approx(expected, rel=1e-4)
 
 
+def test_ec_2_above_50_mpa():
+    """f_ck = 70 MPa in table 3.1: eps_c3 = 2.025e-3, eps_cu3 = 2.656e-3; eta = 0.9 (3.1.7(3))."""
+    area, concrete = 1e-3, rbsdem.Concrete(70e6)
+    section = rbsdem.RectangularSection(
+        0.3, 0.5, bars=[(0.2, area, STEEL)], bar_diameter=0.02, **PLAIN | {"concrete": concrete}
+    )
+    diagram = rbsdem.section.interaction(section, "ec2")
+    squash = 0.9 * 70e6 * (0.15 - area) + 0.002025 * 200e9 * area
+    assert diagram.axial_load[-1] == pytest.approx(squash)
+    axis, strain = (values[diagram.neutral_axis < 0.45][1:]
+                    for values in (diagram.neutral_axis, diagram.tension_strain))  # fmt: skip
+    assert strain * axis / (0.45 - axis) == pytest.approx(0.002656)
+
+
 def test_circles():
     """Spirals have other factors; in EN 1992-1-1 a narrowing width costs a tenth."""
     spiral = rbsdem.section.interaction(ROUND, "aci318")
