@@ -9,8 +9,6 @@ from pathlib import Path
 
 import click
 import numpy as np
-import rich.box
-from rich.table import Table
 
 from rbsdem._files import claim_folder, save_frame, write_figure
 from rbsdem._package import unwarned
@@ -20,11 +18,10 @@ from rbsdem.errors import InputError
 from rbsdem.measured.predict import Prediction, score_summary, scores
 from rbsdem.measured.predict import predict as run_predictions
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
-from rbsdem.methods.verification import Verification
 from rbsdem.methods.verification import verify as solve
 from rbsdem.output import measured
 from rbsdem.output.measured import prediction as draw_prediction
-from rbsdem.output.tables import console, plain
+from rbsdem.output.tables import console, table
 from rbsdem.run.protocol import protocol
 from rbsdem.section.columns import DEFAULT, MODELS
 
@@ -242,22 +239,11 @@ def verify(names: tuple[str, ...], every: bool, output: str | None) -> int:
     Exit codes: 0 all are inside the printed digits or explained, 1 some are not, 2 no such problem.
     """
     verification = solve(list(names) or None)
-    console(160).print(_table(verification if every else verification.worst()))
+    shown = verification if every else verification.worst()
+    styles = [None if one.holds else "red" for one in shown.comparisons]
+    console(160).print(table(shown, styles=styles, fold=True))
     print(verification)
     if output is not None:
         verification.to_csv(output)
         print(f"wrote {output}")
     return 0 if verification.holds else 1
-
-
-def _table(verification: Verification) -> Table:
-    """Return a table whose texts are folded and whose numbers are whole."""
-    made = Table(box=rich.box.SIMPLE_HEAD, show_edge=False, padding=(0, 1))
-    numbers = ("printed", "rbsdem", "difference")
-    rows = verification.to_pandas()
-    for name in rows:
-        whole = name in numbers
-        made.add_column(name, justify="right" if whole else "left", no_wrap=whole)
-    for row, comparison in zip(rows.itertuples(index=False), verification.comparisons, strict=True):
-        made.add_row(*map(plain, row), style=None if comparison.holds else "red")
-    return made

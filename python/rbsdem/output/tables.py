@@ -47,6 +47,7 @@ def table(
     *,
     styles: Sequence[str | None] | None = None,
     caption: str | None = None,
+    fold: bool = False,
 ) -> Table:
     """Return a table for the terminal: mm, kN, kJ (or those of `plot.units`) and per cent.
 
@@ -61,6 +62,8 @@ def table(
         Style of each row, as `rich` names them.
     caption : str, optional
         Text below the table.
+    fold : bool, optional
+        Whether long texts go over several lines; else they are cut.
 
     Returns
     -------
@@ -101,7 +104,8 @@ def table(
         widest.append(max(width, figures) if numbers else min(max(width, figures), _WIDEST))
         shortest = max(map(len, heading.split()), default=0)
         least.append(max(shortest, figures) if numbers else min(widest[-1], _NARROWEST))
-        look: Any = {"justify": "right"} if numbers else {"no_wrap": True, "overflow": "ellipsis"}
+        look: Any = {"no_wrap": not fold, "overflow": "fold" if fold else "ellipsis"}
+        look = {"justify": "right"} if numbers else look
         made.add_column(heading, **look)
     for at, row in enumerate(zip(*(texts for _, _, texts in columns), strict=True)):
         made.add_row(*map(plain, row), style=styles[at] if styles else None)
