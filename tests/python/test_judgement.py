@@ -148,3 +148,14 @@ def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words):
         assert done.returncode == 2
         assert words in done.stderr
     assert not (house.parent / "house.csv").exists()
+
+
+def test_a_building_in_plan_has_no_target_yet(tmp_path):
+    frame = rbsdem.examples.house(1, 1, damping=None, pattern="triangular")
+    planes = [(frame, angle, arm) for angle in (0.0, 90.0) for arm in (0.0, 5.0)]
+    path = tmp_path / "plan.nml"
+    loading = "&loading drive = 'displacement', values = 0.02 /\n"
+    path.write_text(rbsdem.Building(planes).to_namelist() + loading + ASKED)
+    done = command("check", path)
+    assert done.returncode == 2
+    assert "they are for planar frames" in done.stderr

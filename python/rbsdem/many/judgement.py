@@ -21,6 +21,7 @@ from rbsdem.run.case import Case
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.response import pushover
 from rbsdem.section.frame import Frame
+from rbsdem.section.plan import Building
 
 #: Keys of a spectrum, by its code.
 _SPECTRA: dict[str, tuple[str, ...]] = {
@@ -81,6 +82,8 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     faults: list[str] = []
     if asked(case) and not isinstance(case.column, Frame):
         faults.append("target, assess: they are for frames; remove them from the case of a column")
+    if asked(case) and isinstance(case.column, Building):
+        faults.append("target, assess: they are for planar frames; remove them from a building")
     if case.target and (case.method != "static" or case.displacement is None):
         faults.append(
             "target: it is that of a push-over; give drive = 'displacement' without times"
@@ -97,7 +100,7 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
                 f"assess: level = {levels[-1]!r} is none of {group['code']}; it is one of "
                 f"{', '.join(known)}"
             )
-        if isinstance(case.column, Frame):
+        if isinstance(case.column, Frame) and not isinstance(case.column, Building):
             with collected(faults):
                 limits_given(case.column, group["code"], _limits_of(case, group["code"]))
     raise_faults(faults)
