@@ -148,6 +148,8 @@ def test_the_zero_of_the_force_lies_between_two_rows():
     h = metrics.half_cycles([0.0, 1.0, 2.0, 1.0, 0.0], [0.0, 1.0, 1.0, -1.0, -1.0])
     assert h.row.tolist() == [2]
     assert h.energy.tolist() == [1.25]
+    # A tip in the second row: its half-cycle begins in the first.
+    assert metrics.half_cycles([0.0, 1.0, 0.0], [0.0, 1.0, 0.0]).peak_force.tolist() == [1.0]
 
 
 def test_energy_of_the_half_cycles_is_that_of_the_path():

@@ -71,9 +71,15 @@ def test_ec_2_above_50_mpa():
     diagram = rbsdem.section.interaction(section, "ec2")
     squash = 0.9 * 70e6 * (0.15 - area) + 0.002025 * 200e9 * area
     assert diagram.axial_load[-1] == pytest.approx(squash)
-    axis, strain = (values[diagram.neutral_axis < 0.45][1:]
-                    for values in (diagram.neutral_axis, diagram.tension_strain))  # fmt: skip
-    assert strain * axis / (0.45 - axis) == pytest.approx(0.002656)
+    axis, strain = diagram.neutral_axis[1:-1], diagram.tension_strain[1:-1]
+    inside = axis <= 0.5
+    expected = 0.002656 * (0.45 / axis - 1.0)
+    assert strain[inside] == pytest.approx(expected[inside], abs=1e-12)
+    # Wholly in compression the fibre at (1 - eps_c3/eps_cu3) h keeps eps_c3 (figure 6.1).
+    fixed = 0.5 * (1.0 - 2.025 / 2.656)
+    expected = 0.002025 * (0.45 - axis) / (axis - fixed)
+    assert (~inside).any()
+    assert strain[~inside] == pytest.approx(expected[~inside], abs=1e-12)
 
 
 def test_circles():
