@@ -143,7 +143,9 @@ def pushed(family: str, cases: range) -> None:
             run = rbsdem.pushover(frame(random_of(family, case), family), drift=0.05)
         except rbsdem.SolveError as error:
             return f"raised: {error}"
-        told = "" if run.summary["status"] == "completed" else run.summary["reason"]
+        told = {"completed": "", "ended": run.summary["reason"]}.get(run.summary["status"])
+        if told is None:
+            return str(run.summary["status"])
         sound = np.isfinite(run.force).all() and run.summary["relative_energy_residual"] < 1e-9
         unnamed = told and not re.search(r"\b[CB]-\d+-\d+\b", told)
         text = re.sub(r"\b[CBN]-\d+-\d+\b", "M", re.split(r"; |\. ", told.split(": ", 1)[-1])[0])

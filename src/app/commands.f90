@@ -79,7 +79,7 @@ contains
       if (.not. (quiet .or. is_standard_output(file))) then
          call print_summary()
          call structure_notes(run%case, run%structure, notes)
-         call run_notes(run%structure, run%task%summary, notes)
+         call run_notes(run%structure, run%task%summary, run%recorder%spans, notes)
          ! Python gives the name of the case, as it does the rest itself.
          if (shown == path .and. run%case%judgement%asked()) then
             call notes%add('&target, &records and &assess are for the Python package: '// &
@@ -255,6 +255,8 @@ contains
             else
                text = text//'fall without end. The'
             end if
+         else if (summary%has_fallen()) then
+            text = 'axial failure at '//text//': '//trim(summary%remark)//'; the'
          else if (summary%remark /= '') then
             text = 'collapsed: '//trim(summary%remark)//'; the'
          else if (run%structure%by_storeys) then

@@ -108,7 +108,7 @@ contains
       end if
       note = ''
       if (.not. allocated(answer%error)) then
-         call run_notes(run%structure, run%task%summary, notes)
+         call run_notes(run%structure, run%task%summary, run%recorder%spans, notes)
          if (notes%count > 0) note = notes%text
       else if (answer%error%code /= analysis_failed) then
          return

@@ -30,7 +30,7 @@ module rbs_output_channels
       type(row_contents) :: contents
       type(channel_type), allocatable, private :: channel(:)
    contains
-      procedure :: fill, get_labels, names
+      procedure :: fill, get_labels, names, before
    end type channel_list
 
 contains
@@ -91,6 +91,14 @@ contains
          end associate
       end do
    end subroutine get_labels
+
+   !> Values of a row before those of a channel.
+   pure integer function before(self, name)
+      class(channel_list), intent(in) :: self
+      character(len=*), intent(in) :: name
+
+      before = sum(max(self%channel(:findloc(self%channel%name == name, .true., dim=1) - 1)%count, 1))
+   end function before
 
    !> Names of the channels in their order, each with the number of its values, or 0 for one that has none.
    pure character(len=1024) function names(self) result(text)

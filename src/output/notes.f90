@@ -9,6 +9,7 @@ module rbs_output_notes
    use rbs_case_case_record, only: case_record
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
+   use rbs_output_spans, only: span_watch, hinge_turned
    use rbs_output_summary, only: summary_type
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_frame_frame, only: frame_type
@@ -72,8 +73,8 @@ module rbs_output_notes
    !> No ground has moved with more [m/s2].
    real(wp), parameter :: largest_ground = 5.0_wp*standard_gravity
 
-   !> Lateral strength of buildings in shares of their weight, and the rotation of the hinges that it is of.
-   real(wp), parameter :: least_strength = 0.01_wp, largest_strength = 50.0_wp, hinge_turned = 0.02_wp
+   !> Lateral strength of buildings in shares of their weight.
+   real(wp), parameter :: least_strength = 0.01_wp, largest_strength = 50.0_wp
 
    !> Displacements beyond this share of the height are hardly meant.
    real(wp), parameter :: far = 0.5_wp
@@ -81,13 +82,16 @@ module rbs_output_notes
 contains
 
    !> Notes on a run that has ended.
-   subroutine run_notes(structure, summary, notes)
+   subroutine run_notes(structure, summary, spans, notes)
       class(structure_type), intent(in) :: structure
       type(summary_type), intent(in) :: summary
+      !> That watched the rows of the run
+      type(span_watch), intent(in) :: spans
       type(message_list), intent(inout) :: notes
 
       call rotation_note(structure, summary, notes)
       if (summary%remark /= '') call notes%add(trim(summary%remark))
+      call spans%tell(structure, notes)
       if (summary%peak_ground > largest_ground) then
          call notes%add('the ground: its peak is '//to_text(summary%peak_ground/standard_gravity)// &
                         ' g; no ground has moved with more than 5 g, and accelerations are in m/s2')

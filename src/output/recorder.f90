@@ -5,6 +5,7 @@ module rbs_output_recorder
    use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: channel_list
+   use rbs_output_spans, only: span_watch
    use rbs_structure_channel, only: response_type
    use rbs_structure_structure, only: structure_type
    implicit none
@@ -23,6 +24,8 @@ module rbs_output_recorder
       type(channel_list) :: channels
       !> Whether a static path has rows at its corners too, where a spring leaves its line between two targets
       logical :: corners = .false.
+      !> Watches the rows of a frame
+      type(span_watch) :: spans
       real(wp), allocatable, private :: row(:)
    contains
       procedure :: keep
@@ -71,8 +74,13 @@ contains
 
       if (self%channels%width == 0) return
       if (.not. allocated(self%row)) allocate (self%row(0))
-      if (size(self%row) /= self%channels%width) self%row = spread(0.0_wp, 1, self%channels%width)
+      if (size(self%row) /= self%channels%width) then
+         self%row = spread(0.0_wp, 1, self%channels%width)
+         call self%spans%start(structure, self%channels%before('moment_from'), &
+                               self%channels%before('moment_to'), self%channels%before('moment'))
+      end if
       call self%channels%fill(structure, response, springs, deformation, self%row)
+      call self%spans%update(self%row)
       call self%record(self%row, error)
    end subroutine keep
 

@@ -77,7 +77,7 @@ module rbs_output_summary
       !> times of the loading (in time)
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
-      procedure :: update_energies, get_figures, status
+      procedure :: update_energies, get_figures, status, has_fallen
    end type summary_type
 
    !> Forces closer than this share of them are the same peak, as on a plateau, of which the first counts.
@@ -162,6 +162,13 @@ contains
       list = pack(list, applies)
    end subroutine get_figures
 
+   !> Whether a joint of layers has lost its axial load, where nothing static or in time follows.
+   pure logical function has_fallen(self)
+      class(summary_type), intent(in) :: self
+
+      has_fallen = self%lost_joint > 0 .or. (self%fallen_member > 0 .and. .not. self%collapsed)
+   end function has_fallen
+
    !> How the run ended, if nothing failed.
    pure character(len=13) function status(self)
       class(summary_type), intent(in) :: self
@@ -169,7 +176,7 @@ contains
       status = 'completed'
       if (self%stopped) status = 'stopped'
       if (self%collapsed) status = 'collapsed'
-      if (self%lost_joint > 0) status = 'axial_failure'
+      if (self%has_fallen()) status = 'axial_failure'
    end function status
 
 end module rbs_output_summary

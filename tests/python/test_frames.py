@@ -508,7 +508,7 @@ def test_the_span_of_a_beam_yields_where_its_moment_is_largest():
         assert stands.moment_from[0, 0] == pytest.approx(-plastic, rel=1e-6)
         with pytest.raises(rbsdem.SolveError, match="dead load"):
             still(divided, factor + 1e-6)
-    told = r"member B0: at 0.58 of its clear length the moment in its span reaches 1.03e\+05 N m"
+    told = r"member B0: at 0.58 of its clear length the moment in its span reaches 102952 N m"
     with pytest.warns(rbsdem.errors.AccuracyWarning, match=told):
         still(0.0, 11.9)
 
@@ -527,8 +527,8 @@ def test_a_span_without_a_section_is_told(load, tells):
     ours = [str(note.message) for note in notes if "in its span" in str(note.message)]
     assert len(ours) == tells
     if tells:
-        assert ours[0].startswith("member B: at 0.50 of its clear length")
-        assert "6e+05 N m, 20.00 times" in ours[0]
+        assert ours[0].startswith("member B: at 0.5 of its clear length")
+        assert "600003 N m, 20 times" in ours[0]
 
 
 def test_a_drawn_beam_under_load_yields_in_its_span():

@@ -210,6 +210,25 @@ def test_a_wall_that_is_cut_at_floors_is_as_strong(section):
         assert found == pytest.approx(force, rel=2e-3)
 
 
+@pytest.mark.parametrize("share", [0.2, 0.35])
+def test_a_wall_that_loses_its_axial_load_says_so_as_a_column_and_in_a_frame(share):
+    """Without hoops in its boundaries, in cycles."""
+    bare, load = wall(Boundary(0.26, ROWS)), share * 0.3 * 40.5e6
+    path = 4.56 * np.array([0.003, -0.003, 0.006, -0.006, 0.01, -0.01, 0.02, -0.02])
+    alone = rbsdem.section.wall(bare, 4.56, axial_load=load)
+    kinds = rbsdem.section.wall_members(bare, [4.56], axial_loads=load, shear_span=4.56)
+    top = FrameNode("N-1-1", load_y=-load, push_x=1.0)
+    frame = rbsdem.Frame([4.56], columns={(1, 1): kinds[0]}, nodes=[top], pattern="nodes")
+    assert rbsdem.cyclic(alone, displacement=path).summary["status"] == "axial_failure"
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="joint 2 of member C-1-1 no longer"):
+        run = rbsdem.cyclic(frame, displacement=path)
+    assert run.summary["status"] == "axial_failure"
+    assert [event.member for event in run.events if event.name == "fall"] == ["C-1-1"]
+    assert run.limit_states()["axial_failure"].displacement == run.displacement[-1]
+    with pytest.raises(rbsdem.InputError, match="has lost its axial load"):
+        rbsdem.cyclic(frame, displacement=[0.0], initial=run)
+
+
 def test_a_storey_that_may_buckle_out_of_its_plane_is_told():
     with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"storey 2 of 3.1 m is 20.7 times as"):
         rbsdem.section.wall_members(wall(), [3.0, 3.1])

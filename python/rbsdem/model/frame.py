@@ -466,38 +466,13 @@ class MemberGeometry:
         positions from 0 to 1.
         """
         start, end = np.asarray(first, float), np.asarray(last, float)
-        return parabola(start, end, self.hung, np.asarray(shares, float))
+        at = np.asarray(shares, float)
+        return np.asarray(start * (1 - at) - end * at + self.hung * at * (1 - at))
 
     def shear(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
         """Return shear forces along the clear length: the loss of moment per length [N]."""
         s, sway = np.asarray(shares, float), (np.asarray(first) + np.asarray(last)) / self.clear
         return np.asarray(sway + self.across_load * self.clear * (s - 0.5))
-
-
-def parabola(first: Array, last: Array, hung: float | Array, shares: Array) -> Array:
-    """Return moments along clear lengths, see `MemberGeometry.moment`."""
-    return np.asarray(first * (1 - shares) - last * shares + hung * shares * (1 - shares))
-
-
-class Span(NamedTuple):
-    """A loaded member that springs bend.
-
-    Attributes
-    ----------
-    member : int
-        Its number, from 0.
-    hung : float
-        `MemberGeometry.hung`.
-    springs : tuple of FrameSpring
-        Its flexural springs; only those of layers if it has some, as others there never yield.
-    columns : tuple of int
-        Their columns in a result.
-    """
-
-    member: int
-    hung: float
-    springs: tuple[FrameSpring, ...]
-    columns: tuple[int, ...]
 
 
 def places_of(pair: Any, name: str, *lines: int) -> list[Any]:

@@ -15,7 +15,7 @@ from rbsdem._files import data_frame, text_table
 from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of, parabola
+from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of
 from rbsdem.model.springs import Landmark, LandmarkName
 from rbsdem.run.limit_states import LimitState, LimitStates
 from rbsdem.run.rows import Result
@@ -29,10 +29,6 @@ _CHANNELS = {
     "shear": ("slip", "shear"),
     "axial_spring": ("opening", "axial_force"),
 }
-
-#: Moment in a span over what springs know, from which on it is told: where they say at which moment
-#: they yield, and where that is the largest that joints of layers have had.
-_OVER_YIELD, _OVER_LAYERS = 1.005, 1.05
 
 #: Share of the strength in shear, and of M/V, from which on an end with another M/V is told.
 _TELLING, _TELLING_OF_WALLS, _OFF_SPAN = 0.5, 0.1, 0.2
@@ -668,46 +664,6 @@ def _event_name(spring: FrameSpring, point: Landmark) -> str:
     return FAILS if fails else point.name
 
 
-def span_note(result: FrameResult) -> str:
-    """Return a note on members that are bent most between their springs, beyond what these know.
-
-    The moment between the ends is a parabola, as the load on a member is uniform. Where no spring
-    stands it neither cracks nor yields: it is compared with the moment at which the flexural
-    springs of the member yield, and with the largest that they have.
-    """
-    frame, spans = result.frame, result.frame.spans
-    if not spans or not result.time.size:
-        return ""
-    at, hung = [span.member for span in spans], np.array([span.hung for span in spans])
-    largest_of = np.abs(result.springs["moment"]).max(axis=0).tolist()
-    first, last = result.moment_from[:, at], result.moment_to[:, at]
-    shares = 0.5 - (first + last) / (2 * hung)
-    inside = (shares > 0) & (shares < 1)
-    moments = np.abs(np.where(inside, parabola(first, last, hung, shares), 0.0))
-    found: list[tuple[float, str, float, float]] = []
-    largest_at = zip(moments.argmax(axis=0).tolist(), moments.max(axis=0).tolist(), strict=True)
-    for i, (row, largest) in enumerate(largest_at):
-        springs = spans[i].springs
-        over = _OVER_LAYERS if springs[0].rule == "layered" else _OVER_YIELD
-        known = max(largest_of[column] for column in spans[i].columns)
-        if largest > over * known:
-            known = max(known, *(_yield_moment(frame, spring) for spring in springs))
-        if largest > over * known:
-            ratio = largest / known if known else np.inf
-            name = frame.parts.members[at[i]]
-            found.append((ratio, name, largest, float(shares[row, i])))
-    if not found:
-        return ""
-    ratio, name, largest, place = max(found)
-    more = f", and so in {len(found) - 1} more members" if len(found) > 1 else ""
-    return (
-        f"member {name}: at {place:.2f} of its clear length the moment in its span reaches "
-        f"{largest:.4g} N m, {ratio:.2f} times what its flexural springs yield at or carry{more}; "
-        "no spring stands there, so that nothing cracks or yields. Put a node there, or a spring "
-        "(flexure at a place, section.member with its load)"
-    )
-
-
 def shear_span_note(result: FrameResult) -> str:
     """Return a note on ends whose M/V is not that which their strength in shear was found for.
 
@@ -751,18 +707,3 @@ def shear_span_note(result: FrameResult) -> str:
         f"strength in shear was found for {made:.3g} m{more}; make it anew with shear_spans of "
         "section.member"
     )
-
-
-def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
-    """Return the moment at which a spring yields, infinite if it never does; 0 if not known."""
-    if spring.rule == "layered":
-        return 0.0
-    turned = [
-        point.side * point.deformation for point in frame.landmarks[spring] if point.name == "yield"
-    ]
-    own = frame.given_springs[spring]
-    if not turned:
-        return np.inf
-    if own is None:
-        return spring.stiffness * max(turned)
-    return max(float(abs(own.response([turn])[-1])) for turn in turned)

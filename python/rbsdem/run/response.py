@@ -17,7 +17,7 @@ from rbsdem.model.column import NOTES_ON, Column
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.building_result import BuildingResult, both_planes_note
 from rbsdem.run.column_result import ColumnResult
-from rbsdem.run.frame_result import FrameResult, shear_span_note, span_note
+from rbsdem.run.frame_result import FrameResult, shear_span_note
 from rbsdem.run.rows import Result
 from rbsdem.run.solve import HasEndState, follow, march, tell
 from rbsdem.run.solver import Solver, checked_solver
@@ -111,7 +111,8 @@ def cyclic(
         the path ends with the state there as its last row; `summary["status"]` is "axial_failure"
         and `summary["lost_joint"]` is the number of the joint. `summary` has then also the
         load that was lost, `axial_capacity` at that rotation [N], and the `fall` of the joint until
-        it would rest [m; NaN: it does not] with its `fall_energy` [J].
+        it would rest [m; NaN: it does not] with its `fall_energy` [J]. Of a frame
+        `summary["fallen_member"]` is the number of the member, which a warning and `events` name.
 
     Raises
     ------
@@ -315,7 +316,7 @@ def _return(
     if isinstance(result, BuildingResult):
         told.append(both_planes_note(result) if NOTES_ON.get() else "")
     elif isinstance(result, FrameResult):
-        told += [span_note(result), shear_span_note(result)]
+        told.append(shear_span_note(result))
     for text in told:
         if text:
             tell(text)

@@ -148,7 +148,7 @@ def last_state(response: HasEndState) -> Array:
         why = {
             "failed": "the analysis failed on its way; end it before the failure",
             "ended": "the push-over ended on its way; end it before that",
-            "axial_failure": "the column has lost its axial load, and nothing can follow",
+            "axial_failure": "a joint has lost its axial load, and nothing can follow",
         }.get(response.summary["status"], "run the analysis again")
         raise InputError(f"initial: the result has no state at its end: {why}")
     return response.state

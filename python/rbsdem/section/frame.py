@@ -22,7 +22,6 @@ from rbsdem.model.frame import (
     Member,
     MemberGeometry,
     Place,
-    Span,
     at_place,
     cells_of,
     groups_of_cells,
@@ -252,22 +251,6 @@ class Frame:
             found[name] = MemberGeometry(
                 name, start, end, axis, rigid, length - sum(rigid), begin, self.load_of(name)
             )
-        return found
-
-    @cached_property
-    def spans(self) -> list[Span]:
-        """Loaded members that springs bend."""
-        bent: dict[str, list[tuple[FrameSpring, int]]] = {}
-        for column, spring in enumerate(self.parts.springs_of("flexure")):
-            if spring.group == "flexure":
-                bent.setdefault(spring.member, []).append((spring, column))
-        found = []
-        for number, where in enumerate(self.geometry.values()):
-            own = bent.get(where.name, [])
-            own = [pair for pair in own if pair[0].rule == "layered"] or own
-            if own and where.hung:
-                springs, columns = zip(*own, strict=True)
-                found.append(Span(number, where.hung, springs, columns))
         return found
 
     @cached_property

@@ -6,6 +6,7 @@ module rbs_solve_static_corner
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_base_tolerances, only: no_stiffness
    use rbs_hysteresis_interaction_joints, only: update_branches
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_straight_motion, only: find_blocked
@@ -68,8 +69,9 @@ contains
       else
          call search(to_the_end)
       end if
+      if (through .and. .not. found) call find_fall(path)
       call path%springs%forget_mark()
-      if (found .or. path%springs%crushed_joint() > 0) return
+      if (found .or. path%loses_load()) return
       if (path%by_force .or. is_singular .or. is_spent(path)) then
          call report_no_line(path, target, error)
       else
@@ -131,7 +133,7 @@ contains
                return
             end if
             call find_stopped()
-            if (path%springs%crushed_joint() > 0) return
+            if (path%loses_load()) return
             found = stopped == 0
             if (found) then
                path%direction = direction
@@ -372,6 +374,32 @@ contains
       end subroutine change
 
    end subroutine follow_gaps
+
+   !> A joint in compression whose layers together resist no more of it at the corner has lost its axial load.
+   subroutine find_fall(path)
+      !> The mark of its springs is the corner
+      class(static_path), intent(inout) :: path
+      integer :: i, j
+
+      if (path%springs%joints%count == 0) return
+      call path%springs%restore()
+      do i = 1, path%moving
+         if (path%arrived(i) /= 0) call leave(path%springs, i, path%arrived(i))
+      end do
+      associate (joints => path%springs%joints, summary => path%task%summary)
+         do j = 1, joints%count
+            associate (first => joints%first(j), last => joints%last(j), &
+                       location => path%structure%location(joints%first(j)))
+               if (sum(path%springs%k(first:last)) > &
+                   no_stiffness*sum(path%structure%initial_stiffness(first:last))) cycle
+               if (.not. sum([(path%springs%force(i), i=first, last)]) < 0.0_wp) cycle
+               summary%fallen_member = location%member
+               summary%remark = 'the layers of joint '//to_text(location%joint)//' of member '// &
+                                trim(location%owner)//' no longer carry its axial load at '//state_of(path)
+            end associate
+         end do
+      end associate
+   end subroutine find_fall
 
    !> Put a spring on the line that follows in a direction. Lines without length, as layers have that unload
    !> at once after they were loaded again, and those whose end is met at once are left too: a spring that has

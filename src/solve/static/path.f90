@@ -129,6 +129,7 @@ module rbs_solve_static_path
       procedure :: record_corner
       procedure :: record_crossing
       procedure :: energies
+      procedure :: loses_load
       procedure(serialize_interface), deferred :: serialize
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
@@ -259,7 +260,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: failure
       type(energy_type) :: energy
-      logical :: may_collapse, ends
+      logical :: may_collapse, falls, ends
       integer :: i, every, crushed_joint
 
       every = task%every
@@ -288,6 +289,9 @@ contains
          if (crushed_joint > 0) then
             task%summary%lost_joint = self%structure%location(crushed_joint)%index
             call fall_of(self%springs, crushed_joint, task%summary%fall)
+         end if
+         falls = task%summary%has_fallen()
+         if (falls) then
             ! This ends the path.
             if (allocated(failure)) deallocate (failure)
          else if (.not. allocated(failure)) then
@@ -297,8 +301,8 @@ contains
          if (may_collapse) then
             task%summary%collapsed = self%structure%largest_drift(self%springs%d) >= task%collapse_drift
          end if
-         ends = i == size(target) .or. crushed_joint > 0 .or. task%summary%collapsed .or. allocated(failure)
-         if (crushed_joint > 0 .or. allocated(failure)) then
+         ends = i == size(target) .or. falls .or. task%summary%collapsed .or. allocated(failure)
+         if (falls .or. allocated(failure)) then
             if (.not. self%violates_balance) then
                call update_rotation(self)
                call task%summary%update_energies(self%energies())
@@ -336,6 +340,13 @@ contains
          end if
       end do
    end subroutine follow
+
+   !> Whether a joint of layers has lost its axial load.
+   pure logical function loses_load(self)
+      class(static_path), intent(in) :: self
+
+      loses_load = self%springs%crushed_joint() > 0 .or. self%task%summary%fallen_member > 0
+   end function loses_load
 
    !> A path ends where a member loses its axial load, since a fall follows.
    subroutine check_members(self, failure)

@@ -78,7 +78,7 @@ contains
       if (allocated(error)) return
       call path%follow(target, task, error)
       if (allocated(error) .or. .not. task%keeps_end) return
-      if (task%summary%lost_joint == 0) call end_path(path, .false., task%after)
+      if (.not. task%summary%has_fallen()) call end_path(path, .false., task%after)
    end subroutine trace_straight
 
    !> Go on to a target.
@@ -105,7 +105,7 @@ contains
             ! Where the top turns back at a target, springs turn as they must.
             if (direction /= self%last_direction .and. .not. went_back) self%arrived = 0
             call turn_corner(self, direction, target, error)
-            if (allocated(error) .or. self%springs%crushed_joint() > 0) return
+            if (allocated(error) .or. self%loses_load()) return
             call self%check_point(target, self%equilibrium%unbalance, .true., error)
             if (allocated(error)) return
             if (self%goes_back .and. .not. went_back) call begin_loop(self)
