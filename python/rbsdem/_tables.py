@@ -165,7 +165,8 @@ class NumberTable:
 def plain(text: str) -> str:
     """Return a text in small letters without accents."""
     parts = unicodedata.normalize("NFKD", text.lower().replace("ı", "i"))
-    return "".join(letter for letter in parts if not unicodedata.combining(letter))
+    text = "".join(letter for letter in parts if not unicodedata.combining(letter))
+    return text.replace("\u2212", "-")
 
 
 def bare(name: str) -> str:

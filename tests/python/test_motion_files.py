@@ -305,14 +305,46 @@ def test_what_contradicts_the_file_is_refused(text, options, said):
 STATED = {
     "m/s2": ["# Unidad: m/s2", "# Beschleunigung in m/s²", "Accélération (m.s-2)",
              "# amplitude m s-2", "Values in metres per second squared", "# ivme birimi: m/sn2",
-             "#ACC_UNIT=m/s**2",
+             "#ACC_UNIT=m/s**2", "acc_mps2", "acceleration (ms^-2)", "# Ускорение (м/с²)",
              "acc/vel/disp: m/s2 / m/s / m", "acc/vel/disp: m/s2/m/s/m", "UNITS: SEC, M/SEC/SEC"],
     "cm/s2": ["#AmplitudeUnit: gal", "# Gal (cm/s/s)", "acceleration in gals", "Ivme (cm/sn2)",
               "# cm/(s^2)", "unit cm s^-2", "3 channels, in Gal", "units: gal/kine/cm",
-              "UNITS=cm/s2/cm/s/cm", "Einheit: Gal", "Unité: cm/s²"],
+              "UNITS=cm/s2/cm/s/cm", "Einheit: Gal", "Unité: cm/s²",
+              "cm·s⁻²", "Ускорение (см/с2)"],
     "g": ["# Unidad: g", "units: G", "UNITS: (g)", "Acc/Vel/Disp: g / cm/s / cm", "Einheit = g",
           "Acc/Vel/Disp: g/cm/s/cm", "# acc in g's", "in units of g, filtered", "# amplitudes [g]"],
 }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "line", ["% of g", "percent g", "uGal", "Acceleration [10^-2 m/s^2]", "10^-3 g"]
+)
+def test_a_part_of_a_unit_is_refused(line):
+    with pytest.raises(InputError, match=r"the unit of .* is not one of"):
+        motions.read_motion(rows(ONE, f"Title\n{line}\n", " "), "g", dt=0.02)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["fs=200", "Abtastrate 200", "Pas de temps 0.005", "sampling: 200", "1/200 s", "DELTA 0.005",
+     "Tasa de muestreo 200", "Zeitschritt 0.005", "passo 0.005", "Interval: 0.005", "Δt = 0.005",
+     "tstep 0.005", "digitized at 200", "bandpass 0.1-25 Hz, 200 sps"],
+)  # fmt: skip
+def test_a_number_that_may_be_another_step_is_asked_for(line):
+    text = rows(ONE, f"Title\n{line}\n", " ")
+    with pytest.raises(InputError, match=r"step is 0.02 s, but .* may state 0.005 s"):
+        motions.read_motion(text, "g", dt=0.02)
+    assert motions.read_motion(text, "g", dt=0.005).dt == 0.005
+    assert motions.read_motion(text, "g", dt=0.02, checks=False).dt == 0.02
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["NPTS 7", "Latitude 38.1", "Depth 12 km", "Vs30 = 250 m/s", "Filter: 0.05 Hz; 25 Hz",
+     "Instrument freq 25 Hz", "Step 3 of 7", "Number of samples 7", "damping 0.05"],
+)  # fmt: skip
+def test_other_numbers_are_no_steps(line):
+    assert motions.read_motion(rows(ONE, f"Title\n{line}\n", " "), "g", dt=0.02).dt == 0.02
 
 
 @pytest.mark.parametrize("unit", STATED)

@@ -30,14 +30,23 @@ UNITS = {
 }  # fmt: skip
 
 _NUM = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
-_SECOND = r"(?:s(?:ec(?:onds?)?|eg(?:undos?)?|ek(?:unden?)?|n)?)"
+_SECOND = r"(?:s(?:ec(?:onds?)?|eg(?:undos?)?|ek(?:unden?)?|n)?|с(?:ек)?)"
 #: A length over the square of a time, in small letters, as "cm/s/s", "cm/sec**2", "m s-2".
 _PER_SECOND_SQUARED = (
-    r"((?:milli|centi)?met(?:er|re)s?|[mc]?m|in(?:ch(?:es)?)?|f(?:oo|ee)?t)"
-    rf"\s*(?:[/.*·]|per\b|(?<=m)(?=\s))\s*\(?{_SECOND}\)?\s*"
+    r"((?:milli|centi)?met(?:er|re)s?|[mc]?m|[мс]?м|in(?:ch(?:es)?)?|f(?:oo|ee)?t)"
+    rf"\s*(?:[/.*·_]|per\b|p(?=s2)|(?<=m)(?=\s|s\s?\^?-2))\s*\(?{_SECOND}\)?\s*"
     rf"(?:(?:/|per\b)\s*{_SECOND}|(?:\^|\*\*)?[({{]?\s*-?2|squared)[)}}]?(?![a-z0-9])"
 )
-_LENGTHS = {"mi": "mm", "ce": "cm", "me": "m", "fo": "ft", "fe": "ft"}
+_LENGTHS = {
+    "mi": "mm",
+    "ce": "cm",
+    "me": "m",
+    "fo": "ft",
+    "fe": "ft",
+    "мм": "mm",
+    "см": "cm",
+    "м": "m",
+}
 
 
 def unit_named(word: str) -> str:
@@ -120,8 +129,12 @@ _UNIT = re.compile(
 )
 _NUMBER_BEFORE = re.compile(rf"(?<![\w.])({_NUM})\s*[x*×]?\s*$")
 _NUMBER_BEHIND = re.compile(rf"\s*[)\]:=x*×/]+[\s:=]*({_NUM})(?![\d.]*\s*[a-z])")
-#: A part of g that no record has: it is a misprint, or another unit.
-_PART_OF_G = re.compile(r"(?<![\w])(?:%\s?|milli[ -]?|micro[ -]?|[mµμ])g(?:als?)?(?![\w])")
+#: A part of g that no record has, or a factor before a unit: it is a misprint, or another unit.
+_PART_OF_G = re.compile(
+    r"(?<![\w])(?:(?:%|per\s?cent|percentage|porcentaje|prozent)\s*(?:(?:of|de|von)\s+)?|milli[ -]?"
+    r"|micro[ -]?|[mnuµμ])g(?:als?)?(?![\w])|\b10\s*(?:\^|\*\*)\s*[({]?[-+]?\d+[)}]?\W{0,3}"
+    rf"(?:g|gals?|{_PER_SECOND_SQUARED})(?![\w])"
+)
 _UNIT_KEY = re.compile(
     r"(?:unit(?:s|e|es|a)?|unidad(?:es)?|einheit(?:en)?|birimi?)(?![a-z])"
     r"\s*(?:[:=(\[]|(?:of|is|are|in)\b)[\s:=(\[]*(.*)"
@@ -140,9 +153,19 @@ _TIMED = re.compile(
     rf"(?<![\w.:/-])({_NUM})\s*{_TIME_UNIT}|{_TIME_UNIT}\W{{0,3}}?[:=]\s*({_NUM})"
     rf"|(?<![\w.:/-])({_NUM})\s*(?![ckm]?m/|in/|ft/)(?:[a-z]+|1)\s*(?:/|p(?:er|or)\s)\s*{_SECOND}(?![a-z/])"
 )
-_FILTER = re.compile(r"filt|pass|cut|corner|corte|pasa|\b[hl]p\b|natural|instrument|nyquist")
+#: A number without a unit behind what may be a word for a step or a rate.
+_HINTED = re.compile(
+    r"(?:(?:sampl|muestr|abtast|chantill|campion|amostr|orne|step|schritt|interv|aralig|passo?\b|paso"
+    r"|pas de temps|delta\b|δt|\bfs\b|\bfreq|rate\b|digiti[sz])[^\d.+-]{0,24}?"
+    rf"|(?<![\w.])1\s*/)\s*({_NUM})(?![\d.]|\s*(?!s(?:ec)?\b)[-a-z/%])"
+)
+#: Numbers of other things: how many values there are.
+_NUMBER_OF = re.compile(
+    r"\bn(?:o|um|b|r)?\w*\.?[\s_]*(?:of|de|di|der)\b|points|puntos|npts|count|anzahl"
+)
+_FILTER = re.compile(r"filt|pass(?!o)|cut|corner|corte|pasa|\b[hl]p\b|natural|instrument|nyquist")
 #: A step is at most this long, a rate at least its inverse [s].
-_LONGEST_STEP = 0.1
+_LONGEST_STEP, _LEAST_RATE = 0.1, 10.0
 #: Steps that differ by this part are two; times this part of a step off are round-off of printing.
 _UNEVEN = 0.02
 
@@ -251,14 +274,24 @@ def _check_step(head: Sequence[str], step: float, path: str) -> None:
     """Refuse a step if a line has a time or a rate that may be the step, and none has this one."""
     asked: dict[str, float] = {}
     for line in head:
-        text = plain(line)
-        for match in () if _FILTER.search(text) else _TIMED.finditer(text):
-            number = _float(match[1] or match[4] or match[5])
-            other = _seconds(number, match[2] or match[3] or "hz") if number > 0 else math.inf
-            if abs(other - step) <= _UNEVEN * step:
-                return
-            if other <= _LONGEST_STEP:
-                asked.setdefault(line.strip()[:80], other)
+        for text in plain(line).split(";"):
+            if _FILTER.search(text) and "sps" not in text:
+                break
+            found = [
+                _seconds(number, match[2] or match[3] or "hz")
+                for match in _TIMED.finditer(text)
+                if (number := _float(match[1] or match[4] or match[5])) > 0
+            ]
+            for match in () if found or _NUMBER_OF.search(text) else _HINTED.finditer(text):
+                number = _float(match[1])
+                found += (
+                    [number] if 0 < number < 1 else [1 / number] if number > _LEAST_RATE else []
+                )
+            for other in found:
+                if abs(other - step) <= _UNEVEN * step:
+                    return
+                if other <= _LONGEST_STEP:
+                    asked.setdefault(line.strip()[:80], other)
     for line, other in asked.items():
         raise InputError(
             f"{path}: the step is {step:g} s, but {line!r} may state {other:g} s; correct dt or "
