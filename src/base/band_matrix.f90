@@ -31,7 +31,7 @@ module rbs_base_band_matrix
 
    !> Pivots of the scaled matrix above this, in size, serve as well as exchanged ones: they lose no more than
    !> four digits, which a step of refinement recovers.
-   real(wp), parameter :: least_pivot = 0.01_wp
+   real(wp), parameter :: least_pivot = 1.0e-4_wp
 
    type :: band_matrix
       !> Number of unknowns, and of diagonals below the main one
