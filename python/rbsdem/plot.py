@@ -5,6 +5,8 @@ take SI and draw millimetres and kilonewtons. Without axes they make a figure in
 axes that are given keep the style of the caller.
 """
 
+from rbsdem.output.buildings import building as building
+from rbsdem.output.buildings import plan as plan
 from rbsdem.output.frames import assessment as assessment
 from rbsdem.output.frames import frame as frame
 from rbsdem.output.frames import member_forces as member_forces

@@ -81,6 +81,10 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     single = codes.Capacity([0, 0.01, 0.1], [0, 1e4, 1e4], 1.25, 1e3, 2e3)
     target = codes.target(single, codes.DesignSpectrum.en_1998(0.2, "C"), "en_1998")
     corner, massive = target.lines, 1.25e3
+    house = rbsdem.Building.grid(
+        [3.0], [6.0], [5.0], columns=member, beams_x=member, beams_y=member, floor_load=5e3
+    )
+    moved = rbsdem.pushover(house, displacement=0.01, points=2)
     roof, shear_of = 1e3 * pushed.displacement[-1], 1e-3 * pushed.base_shear[-1]
     first_of = {of: 100 * of.runs.response("peak_drift")[0] for of in (stripes,)}
     return {
@@ -132,6 +136,8 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
             (rbsdem.modes(replace(pushed.frame, floor_mass=2e4, beam_load=1e4), 2), 2),
             None,
         ),
+        "plan": (plot.plan, (moved,), (3.0, 2.5)),
+        "building": (plot.building, (moved,), None),
         "assessment": (plot.assessment, (codes.assess(bent_beams, at=0.01),), None),
         "target": (
             plot.target,
@@ -170,6 +176,7 @@ LABELS = {
     "member_forces": ("Distance (m)", "Height (m)"),
     "mode": ("Distance (m)", "Height (m)"),
     "assessment": ("Distance (m)", "Height (m)"),
+    **dict.fromkeys(("plan", "building"), ("$x$ (m)", "$y$ (m)")),
     "target": ("Spectral displacement (mm)", "Spectral acceleration (g)"),
 }
 
@@ -224,7 +231,8 @@ def test_figure(figures, name):
                 assert 2.5 in {one.get_linewidth() for one in ours}
     assert {key for key in before if before[key] != mpl.rcParams[key]} == set()
     with mpl.rc_context({"font.family": "monospace", "font.size": 13.0}):
-        own = list(plt.subplots(1, 3)[1][: axes.size])
+        space = {"projection": "3d"} if name == "building" else {}
+        own = list(plt.subplots(1, 3, subplot_kw=space)[1][: axes.size])
         where = {"axes": own} if "axes" in parameters(function) else {"ax": own[0]}
         assert np.ravel(function(*given, **where)).tolist() == own
         assert {family for family, _ in fonts(own[0].figure)} == {"monospace"}

@@ -23,6 +23,7 @@ from rbsdem.checks import aci_318, asce_41, en_1998, formulas
 from rbsdem.errors import InputError
 from rbsdem.model.frame import MemberGeometry
 from rbsdem.model.shape import RectangularSection, Section, TeeSection
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.frame_result import FAILS, FrameResult
 from rbsdem.section.frame import Frame
 from rbsdem.section.quantities import quantities
@@ -292,7 +293,7 @@ class Assessment(Tabular):
         "asce_41" or "en_1998_3".
     levels : tuple of str
         Its levels, from the strictest.
-    result : FrameResult
+    result : FrameResult or BuildingResult
         What was assessed.
     displacement : float or None
         Displacement of the control node there [m]; None: the envelope of all rows.
@@ -304,7 +305,7 @@ class Assessment(Tabular):
 
     code: str
     levels: tuple[str, ...]
-    result: FrameResult
+    result: Any
     displacement: float | None
     rows: list[dict[str, Any]]
     detailing: float = 1.0
@@ -463,8 +464,12 @@ class Assessment(Tabular):
         return "\n".join((repr(self), *self.warnings))
 
 
+#: The plane of a row that judges a column by both of its planes.
+BOTH = "both planes"
+
+
 def assess(
-    result: FrameResult,
+    result: FrameResult | BuildingResult,
     code: AcceptanceCode = "asce_41",
     *,
     at: float | HasTarget | None = None,
@@ -473,12 +478,13 @@ def assess(
     detailing: float = 1.0,
     limits: Mapping[str, Sequence[float]] | None = None,
 ) -> Assessment:
-    """Return the ends of the members of a frame beside the limits of a code.
+    """Return the ends of the members of a frame, or a building, beside the limits of a code.
 
     Parameters
     ----------
-    result : FrameResult
-        A push-over or a response in time of a frame from sections.
+    result : FrameResult or BuildingResult
+        A push-over or a response in time of a frame from sections. The frames of a building are
+        judged each, and the ends of its columns in two planes by both in addition.
     code : {"asce_41", "en_1998_3"}, optional
         ASCE 41-17: IO, LS and CP. EN 1998-3:2005, annex A: DL, SD and NC.
     at : Target or float, optional
@@ -517,9 +523,14 @@ def assess(
     iv), the factors of force-controlled actions and the limits of joints (table 10-11) are left
     out: panels of nodes have rows whose limits are to be given, rigid nodes have none. EN 1998-3:
     the shear of each joint beside its strut (EN 1998-1, 5.5.3.3), not its hoops. Strengths are
-    those of the drawing: give expected ones.
+    those of the drawing: give expected ones. Columns of a building have a row of both planes at
+    each end, by the resultant of the ratios, the root of the sum of the squares of the largest of
+    each plane: the ellipse that ASCE 41-17 has for moments in two planes, whose largest values in
+    time need not come at once. 100 + 30 per cent of them would be less for equal ratios. At a
+    target the rotations of its frames are multiplied by `Target.torsion`.
     """
-    result = _arguments.instance(result, "assess", FrameResult, "as of rbsdem.pushover")
+    if not isinstance(result, BuildingResult):
+        result = _arguments.instance(result, "assess", FrameResult, "as of rbsdem.pushover")
     code = _arguments.choice(code, "assess: code", get_args(AcceptanceCode))
     kappa = _arguments.number(knowledge, "assess: knowledge", above=0.0, most=1.0)
     first = _arguments.boolean(primary, "assess: primary")
@@ -527,8 +538,17 @@ def assess(
     if detailed != 1.0 and code != "en_1998_3":
         raise InputError("assess: detailing is for 'en_1998_3'; leave it out")
     place, rows = rows_at(result, at)
-    levels, stated = LEVELS[code], limits_given(result.frame, code, limits)
-    walls, ends = _walls_of(result.frame), demands(result, rows)
+    levels, stated = LEVELS[code], limits_given(result.column, code, limits)
+    walls = _walls_of(result.column)
+    frames = result.frames if isinstance(result, BuildingResult) else {"": result}
+    factors = getattr(at, "torsion", {})
+    ends = [
+        d._replace(member=f"{name}:{d.member}", rotation=d.rotation * factors.get(name, 1.0))
+        if name
+        else d
+        for name, own in frames.items()
+        for d in demands(own, rows)
+    ]
     if code == "asce_41":
         # Joints are judged by their rotation, and a rigid one has none.
         ends = [d for d in ends if d.end != "joint"]
@@ -570,6 +590,8 @@ def assess(
                 "status": status,
             }
         )
+    if isinstance(result, BuildingResult):
+        made += _both_planes(made, result.building.axial_of, levels)
     return Assessment(code, levels, result, place, made, detailed)
 
 
@@ -577,6 +599,31 @@ def _walls_of(frame: Frame) -> set[str]:
     """Return the names of the members that are walls."""
     drawn = ((name, kind.sections or ()) for name, kind in frame.kinds.items())
     return {name for name, sections in drawn if any(one.shape == "wall" for one in sections)}
+
+
+def _both_planes(
+    rows: Sequence[dict[str, Any]], axial_of: Mapping[str, str], levels: tuple[str, ...]
+) -> Iterator[dict[str, Any]]:
+    """Yield a row for each end of a column in two planes: the resultant of their ratios."""
+    ratios = ("ratio_shear", *(f"ratio_{name}" for name in levels))
+    by_end: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for row in rows:
+        by_end.setdefault((row["member"], row["end"]), []).append(row)
+    for second, first in axial_of.items():
+        for end in ("start", "end"):
+            planes = [by_end.get((member, end), []) for member in (first, second)]
+            if not all(planes):
+                continue
+            both: dict[str, Any] = dict.fromkeys(planes[0][0], math.nan)
+            for name in ratios:
+                # A plane in which no side has a ratio leaves the end without one.
+                largest = [np.fmax.reduce([row[name] for row in own]) for own in planes]
+                both[name] = float(np.hypot(*largest))
+            bad = [row["status"] for own in planes for row in own if row["status"] != "evaluated"]
+            sheared = both["ratio_shear"] > np.nan_to_num(both[ratios[-1]])
+            both |= {"member": first, "end": end, "face": BOTH, "source": "resultant of the ratios"}
+            both |= {"governed_by": "shear" if sheared else "rotation"}
+            yield both | {"status": bad[0] if bad else "evaluated"}
 
 
 def limits_given(frame: Frame, code: AcceptanceCode, limits: Any) -> dict[str, tuple[float, ...]]:
@@ -627,12 +674,12 @@ def limits_given(frame: Frame, code: AcceptanceCode, limits: Any) -> dict[str, t
     return stated
 
 
-def rows_at(result: FrameResult, at: Any) -> tuple[float | None, Array]:
+def rows_at(result: FrameResult | BuildingResult, at: Any) -> tuple[float | None, Array]:
     """Return the displacement that is judged, and its row, or all rows.
 
     Parameters
     ----------
-    result : FrameResult
+    result : FrameResult or BuildingResult
         The result.
     at : Target, float or None
         As for `assess`.

@@ -24,11 +24,16 @@ from rbsdem.checks.en_1998 import target_of_one_mass
 from rbsdem.curves.envelope import SOURCES, Envelope, Idealisation, envelope
 from rbsdem.errors import InputError, warn
 from rbsdem.motions.design import DesignSpectrum, damping_factor
-from rbsdem.run.analysis import matrices, modes
+from rbsdem.run.analysis import BuildingModes, matrices, modes
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.frame import Frame
+from rbsdem.section.plan import Building, cosine_sine
 
 TargetMethod = Literal["asce_41", "en_1998", "capacity_spectrum"]
+
+#: Damping by which modes are combined; share of a push below which a frame lies across it.
+_DAMPING, _ACROSS = 0.05, 0.5
 
 #: Units of factors.
 _UNITS = {"m*": "kg", "d_et*": "m", "d_t*": "m"}
@@ -60,7 +65,7 @@ class Target(Tabular):
         The coefficients of the method by name.
     warnings : tuple of str
         What a reader has to know.
-    push : FrameResult or None
+    push : FrameResult, BuildingResult or None
         The push-over; None where a `Capacity` was given.
     """
 
@@ -74,7 +79,7 @@ class Target(Tabular):
     ductility: float
     factors: dict[str, float]
     warnings: tuple[str, ...] = ()
-    push: FrameResult | None = None
+    push: Any = None
 
     @property
     def reached(self) -> bool:
@@ -94,7 +99,7 @@ class Target(Tabular):
     @property
     def drift(self) -> float:
         """Target displacement over the height of the frame."""
-        return self.displacement / self.pushed.frame.height
+        return self.displacement / float(self.pushed.column.height)
 
     @property
     def signed(self) -> float:
@@ -104,13 +109,58 @@ class Target(Tabular):
 
     @cached_property
     def storey_drift(self) -> Array:
-        """Storey drifts at the target displacement, beyond those of the dead load."""
-        drift = self.pushed.storey_drift
+        """Storey drifts at the target displacement, beyond those of the dead load.
+
+        Of a building the largest of its corners.
+        """
+        push = self.pushed
+        drift = push.corner_drift if isinstance(push, BuildingResult) else push.storey_drift
         there: Array = between(rows_at(self.pushed, self)[1], np.abs(drift - drift[0]))[0]
         return there
 
+    @cached_property
+    def torsion(self) -> dict[str, float]:
+        """Factors of the displacements of the frames of a building for torsion, by their names.
+
+        Roof displacement of a frame over that of the centre of mass by elastic modal analysis along
+        the push (complete quadratic combination, 5 %), at least 1, over the same ratio of the
+        push-over at the target, and at least 1: the extended N2 method (Kreslin and Fajfar 2012)
+        for EN 1998-1, 4.3.3.4.2.7. Frames across the push, and planar frames, have none.
+        """
+        push = self.pushed
+        if not isinstance(push, BuildingResult):
+            return {}
+        building = push.building
+        found, along, share = _moved_along(building)
+        size = share * np.array([self.spectrum.sa(period) for period in found.period])
+        size = size / found.omega**2
+        roof = np.stack([one[-1] for one in (found.floor_x, found.floor_y, found.floor_rotation)])
+        rows = rows_at(push, self)[1]
+        moved = [push.floor_x[:, -1], push.floor_y[:, -1], push.floor_rotation[:, -1]]
+        pushed = np.array([between(rows, one - one[0])[0, 0] for one in moved])
+        ratio = np.divide.outer(found.omega, found.omega)
+        close = 8.0 * _DAMPING**2 * (1.0 + ratio) * ratio**1.5
+        close /= (1.0 - ratio**2) ** 2 + 4.0 * _DAMPING**2 * ratio * (1.0 + ratio) ** 2
+
+        def combined(each: Array) -> float:
+            return float(np.sqrt((size * each) @ close @ (size * each)))
+
+        c, s = cosine_sine(building.direction)
+        x, y = building.centres[-1]
+        factors = {}
+        for plane in building.planes:
+            cosine, sine = plane.direction
+            toward = cosine * c + sine * s
+            if abs(toward) < _ACROSS:
+                continue
+            of_frame = np.array([cosine, sine, plane.arm - (x * sine - y * cosine)]) / toward
+            elastic = combined(of_frame @ roof) / combined(along[-1])
+            by_push = float(of_frame @ pushed / (pushed @ [c, s, 0.0]))
+            factors[plane.name] = max(max(elastic, 1.0) / by_push, 1.0) if by_push > 0 else math.inf
+        return factors
+
     @property
-    def pushed(self) -> FrameResult:
+    def pushed(self) -> Any:
         """The push-over; `InputError` where a `Capacity` was given."""
         if self.push is None:
             raise InputError("target: it was made of a Capacity; give the push-over of a frame")
@@ -146,7 +196,7 @@ class Target(Tabular):
 
 
 def target(
-    push: FrameResult | Capacity,
+    push: FrameResult | BuildingResult | Capacity,
     spectrum: DesignSpectrum,
     method: TargetMethod = "asce_41",
     **settings: Any,
@@ -155,8 +205,10 @@ def target(
 
     Parameters
     ----------
-    push : FrameResult or Capacity
-        What `rbsdem.pushover` returned, or a curve with its masses.
+    push : FrameResult, BuildingResult or Capacity
+        What `rbsdem.pushover` returned, or a curve with its masses. That of a building is judged
+        along its direction, with the mode that moves most mass there; `torsion` of the target
+        amplifies its frames.
     spectrum : DesignSpectrum
         The demand: `DesignSpectrum.asce_41`, `.en_1998`, `.table` or `.mean_of` records.
     method : {"asce_41", "en_1998", "capacity_spectrum"}, optional
@@ -194,12 +246,12 @@ def target(
     return replace(run(curve, demand, **settings), push=pushed)
 
 
-def capacity(push: FrameResult) -> Capacity:
+def capacity(push: FrameResult | BuildingResult) -> Capacity:
     """Return the capacity curve of a push-over with the first mode of its frame.
 
     Parameters
     ----------
-    push : FrameResult
+    push : FrameResult or BuildingResult
         What `rbsdem.pushover` returned. Displacement and base shear count from its first row, in
         which the frame stands under its dead load.
 
@@ -208,9 +260,12 @@ def capacity(push: FrameResult) -> Capacity:
     InputError
         If it is none, or the frame has no mass.
     """
-    push = _arguments.instance(push, "target", FrameResult, "as of rbsdem.pushover")
+    if not isinstance(push, BuildingResult):
+        push = _arguments.instance(push, "target", FrameResult, "as of rbsdem.pushover")
     if push.dynamic:
         raise InputError("target: the result is a response in time; give a push-over")
+    if isinstance(push, BuildingResult):
+        return _capacity_of_building(push)
     frame: Frame = push.frame
     if frame.control == "y" or not frame.parts.mass > 0:
         raise InputError("target: the frame has no mass along x, or is not pushed along it")
@@ -227,6 +282,38 @@ def capacity(push: FrameResult) -> Capacity:
     masses, period = (gamma, modal_mass, frame.parts.mass), float(first.period[0])
     stiffness = _elastic_slope(frame, first.x[:, 0])
     return Capacity(u, v, *masses, max(storeys, 1), period, stiffness, pdelta_slope=slope)
+
+
+def _moved_along(building: Building) -> tuple[BuildingModes, Array, Array]:
+    """Return the modes of a building, the motion of its floors along its direction, and shares.
+
+    The shares are those of the modes in a motion of the ground along this direction.
+    """
+    found = modes(building, 3 * len(building.storey_heights))
+    masses = building.plan_mass.copy()
+    for node in building.nodes:
+        if node.floor:
+            masses[node.floor - 1] += node.mass
+    c, s = cosine_sine(building.direction)
+    along = c * found.floor_x + s * found.floor_y
+    return found, along, masses @ along
+
+
+def _capacity_of_building(push: BuildingResult) -> Capacity:
+    building = push.building
+    found, along, shares = _moved_along(building)
+    if not shares.any():
+        raise InputError("target: the building has no mass along the push; give its floors some")
+    first = int(np.abs(shares).argmax())
+    phi, moved = float(along[-1, first]), float(abs(shares[first]))
+    gamma, modal_mass = moved * abs(phi), moved / abs(phi)
+    side = math.copysign(1.0, push.displacement[-1] - push.displacement[0])
+    u = side * (push.displacement - push.displacement[0])
+    v = side * (push.base_shear - push.base_shear[0])
+    slope = _pdelta_slope(building, found.x[:, first] / phi, gamma)
+    total = float(np.sum(building.plan_mass) + sum(one.mass for one in building.nodes if one.floor))
+    storeys = len(building.storey_heights)
+    return Capacity(u, v, gamma, modal_mass, total, storeys, pdelta_slope=slope)
 
 
 def _elastic_slope(frame: Frame, shape: Array) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -29,6 +29,7 @@ from rbsdem.model.springs import Bilinear, Compression, Elastic, Layered, Spring
 from rbsdem.run.analysis import modes
 from rbsdem.run.response import cyclic, pushover, time_history
 from rbsdem.section.frame import Frame
+from rbsdem.section.plan import Building
 from rbsdem.section.strength import axial_failure_drift, interaction
 
 INCH, FOOT = 0.0254, 0.3048
@@ -78,6 +79,64 @@ def pushed_seven_storeys() -> list[float]:
     """Return the displacement of its top under 72.5 kip [in]."""
     push = pushover(seven_storeys(), force=72.5 * KIP, points=1)
     return [push.displacement[-1] / INCH]
+
+
+def as_building() -> Array:
+    """Return the periods of that frame as a building of one line, with its masses on the floors."""
+    frame = seven_storeys()
+    bare = replace(frame, nodes=[node for node in frame.nodes if not node.mass], members=())
+    return modes(Building([(bare, 0.0, 0.0)], floor_mass=0.49 * MASS, pattern="nodes"), 7).period
+
+
+def peterson(turned: float = 0.0) -> Building:
+    """Return the eccentric building of two storeys, turned in plan by some degrees [ft, kip]."""
+    column, beam = FrameMember(3.5e5, 4.0, 1.25), FrameMember(5e5, 1.0, 2.61)
+    along_x, along_y = (Frame([13.0] * 2, [bay] * 2, column, beam) for bay in (35.0, 25.0))
+    frames = [(along_x, turned, -y, 0.0) for y in (0.0, 25.0, 50.0)]
+    frames += [(along_y, turned + 90.0, x, 0.0) for x in (0.0, 35.0, 70.0)]
+    c, s = np.cos(np.radians(turned)), np.sin(np.radians(turned))
+    centre = 38.0 * c - 27.0 * s, 38.0 * s + 27.0 * c
+    return Building(frames, centres=centre, floor_mass=6.21118, inertia=0.0, direction=turned)
+
+
+def eccentric_building(turned: float = 0.0) -> list[float]:
+    """Return its periods, and the roof under a flat spectrum of 0.4 g by the sum of squares."""
+    found = modes(peterson(turned), 4)
+    c, s = np.cos(np.radians(turned)), np.sin(np.radians(turned))
+    along = c * found.floor_x + s * found.floor_y
+    roof = 0.4 * 32.2 / found.omega**2 * 6.21118 * along.sum(axis=0) * along[1]
+    return [*found.period, float(np.hypot.reduce(roof))]
+
+
+def sprung_storey(spring: Spring, mass: float = 0.0, load: float = 0.0) -> Frame:
+    """Return a storey of 3 m on a post between pins, held by a spring from the ground."""
+    post = FrameMember(3e10, 1.0, 1.0, ends="pinned")
+    nodes = [
+        FrameNode("foot", 0.0, 0.0, support="fixed", floor=0),
+        FrameNode("anchor", -4.0, 3.0, support="fixed"),
+        FrameNode("top", 0.0, 3.0, floor=1, mass=mass, load_y=-load),
+    ]
+    strut = FrameMember.strut(spring)
+    members = [Member("post", "foot", "top", post), Member("spring", "anchor", "top", strut)]
+    return Frame(nodes=nodes, members=members)
+
+
+def eccentric_storey() -> Building:
+    """Return a storey of four springs that yield, those along x of unlike stiffness."""
+
+    def yielding(k: float, force: float) -> Frame:
+        return sprung_storey(Bilinear(k, force / k, 1e-9 * k))
+
+    frames = [(yielding(60e6, 600e3), 0.0, 5.0), (yielding(30e6, 300e3), 0.0, -5.0)]
+    return Building([*frames, *((yielding(40e6, 500e3), 90.0, x) for x in (-8.0, 8.0))])
+
+
+def yields_in_plan() -> list[float]:
+    """Return the load at first yield [N], and U [mm] and Theta where both frames yield."""
+    building = eccentric_storey()
+    first = cyclic(building, displacement=[0.011], corners=True).force[1]
+    last = cyclic(building, force=[900e3 * (1.0 - 1e-12)])
+    return [first, 1e3 * last.displacement[-1], abs(last.floor_rotation[-1, 0])]
 
 
 def nine_storeys() -> Array:
@@ -658,6 +717,16 @@ PROBLEMS: list[Problem] = [
             lambda: modes(seven_storeys(), 7).period),
     Problem("Seven storeys, lateral loads", "SAP2000 verification manual, example 1-022",
             "displacement of the top [in]", "1.45076", pushed_seven_storeys),
+    Problem("Building of one line, seven storeys", "SAP2000 verification manual, example 1-022",
+            "periods [s]", "1.2732 0.4313 0.2420 0.1602 0.1190 0.0951 0.0795", as_building),
+    *(
+        Problem(f"Eccentric building{how}", "Peterson; SAP2000 verification manual, example 1-024",
+                "four periods [s], roof [ft]", "0.2271 0.2156 0.0733 0.0720 0.0201",
+                partial(eccentric_building, angle))
+        for how, angle in (("", 0.0), (", turned by 30 degrees", 30.0))
+    ),
+    Problem("Eccentric storey that yields", "closed form, two equations of equilibrium",
+            "load [N], U [mm], Theta", "789162.56 11.46484 2.9297e-4", yields_in_plan),
     Problem("Nine storeys, ten bays", "Bathe and Wilson; SAP2000 verification manual, 1-021",
             "eigenvalues [1/s2]", "0.589541 5.52695 16.5878", nine_storeys),
     *(

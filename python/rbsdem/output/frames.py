@@ -25,6 +25,7 @@ from rbsdem.output.style import (
 from rbsdem.output.units import factor, labelled, paper
 from rbsdem.run.analysis import FrameModes
 from rbsdem.run.frame_result import FAILS, FrameResult
+from rbsdem.run.rows import Result
 from rbsdem.section.frame import Frame
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 
 #: Limit states of a hinge in their order, their names in a legend, and their fills.
-_STATES = {
+STATES = {
     "": ("not reached", "white"),
     "cracking": ("cracked", "0.7"),
     "yield": ("yielded", "black"),
@@ -44,7 +45,7 @@ _STATES = {
     "cap": ("beyond its cap", "#c0392b"),
     FAILS: ("failed in shear", "#8e44ad"),
 }
-_HINGE: dict[str, Any] = {
+HINGE: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
     "markersize": 4.0,
@@ -52,8 +53,8 @@ _HINGE: dict[str, Any] = {
     "markeredgewidth": 0.5,
     "zorder": 5,
 }
-_UNDEFORMED: dict[str, Any] = {"color": "0.75", "linewidth": 0.6, "zorder": 1}
-_MEMBER: dict[str, Any] = {"color": "black", "linewidth": 1.1, "zorder": 3}
+UNDEFORMED: dict[str, Any] = {"color": "0.75", "linewidth": 0.6, "zorder": 1}
+MEMBER: dict[str, Any] = {"color": "black", "linewidth": 1.1, "zorder": 3}
 _LOST = {"linestyle": ":", "color": "#c0392b"}
 _NODE: dict[str, Any] = {
     "linestyle": "none",
@@ -158,10 +159,10 @@ def frame(
         result, structure = None, _arguments.instance(shown, "plot.frame", Frame)
     size = _size(structure)
     if result is not None:
-        row = _row(result, row)
+        row = row_of(result, row)
         largest = float(np.hypot(result.x[row], result.y[row]).max())
         if scale is None:
-            scale = _rounded(0.1 * size / largest) if largest > 0 else 1.0
+            scale = rounded(0.1 * size / largest) if largest > 0 else 1.0
         scale = _arguments.number(scale, "plot.frame: scale")
     with axes_or_new(ax, _figure_size(structure)) as drawn:
         _draw_supports(drawn, structure, size)
@@ -175,7 +176,7 @@ def frame(
                     continue
                 bent = deformed(result, member, row, scale, turns)
                 lost = result.lost is not None and result.lost[row, i] > 0
-                line = _MEMBER | (_LOST if lost else {})
+                line = MEMBER | (_LOST if lost else {})
                 drawn.plot(*bent.T, **line)
                 for node, end in ((member.start, bent[0]), (member.end, bent[-1])):
                     drawn.plot(*np.vstack((moved[node], end)).T, **line)
@@ -224,7 +225,7 @@ def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
         for member in structure.geometry.values():
             bent = deformed(shapes, member, row, scale, still)
             nodes = moved[[member.start, member.end]]
-            drawn.plot(*np.vstack((nodes[:1], bent, nodes[1:])).T, **_MEMBER)
+            drawn.plot(*np.vstack((nodes[:1], bent, nodes[1:])).T, **MEMBER)
         share = 100 * found.participation[at]
         drawn.set_title(f"Mode {number}: {found.period[at]:.3g} s, {share:.0f} % of the mass")
         _dress(drawn, structure)
@@ -262,7 +263,7 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
             end = f"at {float(first.end):.2f}" if first.end[:1].isdigit() else first.end
             drawn.plot(
                 *(values[rows] for values in way),
-                **_HINGE | mark,
+                **HINGE | mark,
                 label=", ".join(filter(None, (first.member, end, _VERBS[what]))) + more,
             )
         if result.events:
@@ -380,7 +381,7 @@ def member_forces(
     """
     _arguments.instance(result, "plot.member_forces", FrameResult)
     force = _arguments.choice(force, "plot.member_forces: force", tuple(_FORCES))
-    row = _row(result, row)
+    row = row_of(result, row)
     structure, (name, unit) = result.frame, _FORCES[force]
     members = list(structure.geometry.values())
     values = [_forces(result, i, members[i], force, row) for i in range(len(members))]
@@ -427,7 +428,7 @@ def _numbered(
     return found
 
 
-def _row(result: FrameResult, row: int) -> int:
+def row_of(result: Result, row: int) -> int:
     """Return the number of a row, from 0."""
     row, count = _arguments.integer(row, "row"), result.time.size
     if not -count <= row < count:
@@ -447,7 +448,7 @@ def _figure_size(structure: Frame) -> tuple[float, float]:
     return width, float(np.clip(0.9 + 0.85 * width * high / max(wide, 0.3 * high), 1.8, 6.5))
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
     """Return the nearest of 1, 2, 5, 10 and so on."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
@@ -532,29 +533,32 @@ def deformed(
     return np.asarray(drawn + scale * bent[..., None] * member.normal)
 
 
-def _draw_hinges(
-    ax: Axes, structure: Frame, result: FrameResult | None, row: int, scale: float
-) -> None:
-    """Draw springs that have limit states, filled by the furthest that they have reached."""
+def hinge_points(
+    structure: Frame, result: FrameResult | None, row: int, scale: float
+) -> dict[str, list[tuple[Array, Array]]]:
+    """Return where springs with limit states are, by the furthest state that they have reached.
+
+    Each with its place before and after the displacements [m].
+    """
     reached: dict[tuple[str, str, str], str] = {}
-    order = list(_STATES)
+    order = list(STATES)
     for event in () if result is None else result.events:
         if event.group not in ("member", "infill") and event.time <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
             reached[key] = max(reached.get(key, ""), event.name, key=order.index)
     turns = None if result is None else spring_rotations(result, row)
     beside = _BESIDE * _size(structure)
-    points: dict[str, list[Array]] = {state: [] for state in _STATES}
+    points: dict[str, list[tuple[Array, Array]]] = {state: [] for state in STATES}
     for spring in structure.parts.springs:
         layered = (spring.rule, spring.group) == ("layered", "flexure")
         if spring.member in structure.struts or not (layered or structure.landmarks[spring]):
             continue
         if spring.group == "panel":
             node = structure.parts.nodes.index(spring.member)
-            here = np.array([structure.parts.x[node], structure.parts.y[node]])
+            here = still = np.array([structure.parts.x[node], structure.parts.y[node]])
             if result is not None:
                 here = here + scale * np.array([result.x[row, node], result.y[row, node]])
-            points[reached.get((spring.member, "panel", ""), "")].append(here)
+            points[reached.get((spring.member, "panel", ""), "")].append((still, here))
             continue
         member = structure.geometry[spring.member]
         end = {0.0: "start", 1.0: "end"}.get(spring.position, f"{spring.position:g}")
@@ -564,16 +568,29 @@ def _draw_hinges(
             continue
         aside = min(beside / member.clear, 0.3)
         share = np.array([np.clip(spring.position, aside, 1 - aside)])
-        if result is None or turns is None:
-            at = member.foot + share * member.clear * member.axis
-        else:
+        at = still = member.foot + share * member.clear * member.axis
+        if result is not None and turns is not None:
             at = deformed(result, member, row, scale, turns, share)[0]
-        points[state].append(at)
+        points[state].append((still, at))
+    return points
+
+
+def _draw_hinges(
+    ax: Axes, structure: Frame, result: FrameResult | None, row: int, scale: float
+) -> None:
+    """Draw springs that have limit states, filled by the furthest that they have reached."""
+    points = hinge_points(structure, result, row, scale)
+    turns = None if result is None else spring_rotations(result, row)
     _mark_members(ax, result, row, scale, turns)
-    for state, (label, fill) in _STATES.items():
+    for state, (label, fill) in STATES.items():
         if points[state]:
             name = label if result is not None else "hinge"
-            ax.plot(*np.array(points[state]).T, **_HINGE, markerfacecolor=fill, label=name)
+            ax.plot(
+                *np.array([at for _, at in points[state]]).T,
+                **HINGE,
+                markerfacecolor=fill,
+                label=name,
+            )
     if any(points.values()):
         ax.legend(
             loc="upper center",
@@ -630,7 +647,7 @@ def _mark_members(
                 deformed(result, result.frame.geometry[one], row, scale, turns, np.array([0.5]))[0]
                 for one in members
             ]
-            mark = _HINGE | {"markersize": 6.5} | _MARKS[name]
+            mark = HINGE | {"markersize": 6.5} | _MARKS[name]
             ax.plot(*np.array(places).T, **mark, label=label)
 
 
@@ -641,13 +658,13 @@ def _undeformed(ax: Axes, structure: Frame, strong: bool) -> Array:
     for name, ends in zip(parts.members, parts.ends, strict=True):
         if name in structure.struts:
             continue
-        ax.plot(*nodes[ends].T, **(_MEMBER if strong else _UNDEFORMED))
+        ax.plot(*nodes[ends].T, **(MEMBER if strong else UNDEFORMED))
     for member in structure.geometry.values() if strong else ():
         # Rigid lengths are thick.
         for node, length in ((member.start, member.rigid[0]), (member.end, -member.rigid[1])):
             if length:
                 away = nodes[node] + length * member.axis
-                ax.plot(*np.vstack((nodes[node], away)).T, **_MEMBER | {"linewidth": 2.6})
+                ax.plot(*np.vstack((nodes[node], away)).T, **MEMBER | {"linewidth": 2.6})
     return nodes
 
 

@@ -210,6 +210,14 @@ class BuildingResult(Result):
             vars(found)["_is_path"] = True
         return found
 
+    def may_have_lost(self, displacement: float = np.inf) -> list[str]:
+        """Return the columns of all frames that may have lost their axial load, as theirs do."""
+        return [
+            f"{name}:{member}"
+            for name, result in self.frames.items()
+            for member in result.may_have_lost(displacement)
+        ]
+
     @cached_property
     def events(self) -> LimitStates:
         """Limit states of the springs of all frames, in the order in which they are reached."""

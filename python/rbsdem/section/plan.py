@@ -46,6 +46,15 @@ PLAN_NOTE = (
 )
 
 
+def cosine_sine(degrees: float) -> tuple[float, float]:
+    """Return cosine and sine of an angle in degrees, exact at quarters of a turn."""
+    quarters, rest = divmod(degrees % 360.0, 90.0)
+    cosine, sine = float(np.cos(np.radians(rest))), float(np.sin(np.radians(rest)))
+    for _ in range(int(quarters)):
+        cosine, sine = -sine, cosine
+    return cosine, sine
+
+
 @dataclass(frozen=True)
 class Plane:
     """A planar frame in a building.
@@ -75,11 +84,7 @@ class Plane:
     @property
     def direction(self) -> tuple[float, float]:
         """Cosine and sine of its angle."""
-        quarters, rest = divmod(self.angle % 360.0, 90.0)
-        cosine, sine = float(np.cos(np.radians(rest))), float(np.sin(np.radians(rest)))
-        for _ in range(int(quarters)):
-            cosine, sine = -sine, cosine
-        return cosine, sine
+        return cosine_sine(self.angle)
 
     def places(self, x: ArrayLike) -> Array:
         """Return the places in plan of points of the frame, shape (points, 2) [m].
