@@ -297,6 +297,6 @@ def both_planes_note(result: BuildingResult) -> str:
     when = f"{found[name]:.4g} s" if result.dynamic else f"point {found[name]:.4g}"
     return (
         f"column {name}{more}: both of its planes are beyond yield at once, first at {when}; "
-        "planar hinges do not know of each other, and on a diagonal they carry 1.2 to 1.4 times "
+        "planar hinges do not know of each other, and on a diagonal they carry 1.2 to 1.7 times "
         "what the column does"
     )

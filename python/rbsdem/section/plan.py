@@ -42,7 +42,7 @@ _NOT_DRAWN = ("cls", "more", "__class__")
 PLAN_NOTE = (
     "Floors are rigid in plan, and members do not resist torsion. A column in two planes has one "
     "axial force, and its planar hinges do not know of each other: on a diagonal they carry 1.2 to "
-    "1.4 times what the column does. It does not lose its axial load, whatever its drift."
+    "1.7 times what the column does. It does not lose its axial load, whatever its drift."
 )
 
 
