@@ -8,7 +8,7 @@ import pytest
 from test_building import MORE, B, C
 
 import rbsdem
-from rbsdem import codes
+from rbsdem import codes, plot
 from rbsdem.errors import AccuracyWarning
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member, TeeSection
 from rbsdem.methods.verification import eccentric_storey, peterson, sprung_storey
@@ -249,6 +249,23 @@ def test_targets_are_amplified_by_torsion_of_the_modes():
     assert found.storey_drift == pytest.approx(
         [found.displacement / 3.0 / u[0] * np.hypot(u[0] - 5 * u[1], 8 * u[1])], rel=1e-9
     )
+
+
+def test_the_report_of_a_building_has_its_frames(tmp_path):
+    frame = rbsdem.Frame([3.0], [5.0], ELASTIC, ELASTIC, floor_mass=1e4, beam_load=1e4)
+    push = rbsdem.pushover(rbsdem.Building([(frame, 0.0, 0.0)]), displacement=0.01, points=2)
+    text = rbsdem.report(push, tmp_path / "house.html").read_text()
+    for heading in ("Inputs", "Building", "x-1 Frame", "x-1 Response", "x-1 Members"):
+        assert f"<h2>{heading}</h2>" in text
+    tables = {path.name for path in (tmp_path / "house_files").iterdir()}
+    assert {"inputs.csv", "x_1_members.csv", "rows.csv"} <= tables
+
+
+def test_what_is_of_one_frame_refuses_a_building(pushed, tmp_path):
+    found = codes.assess(pushed, "en_1998_3")
+    for draw in (plot.assessment, lambda one: rbsdem.report(one, tmp_path / "one.html")):
+        with pytest.raises(rbsdem.InputError, match=r"push.frame\('x-1'\)"):
+            draw(found)
 
 
 REFUSED = [

@@ -674,6 +674,16 @@ def limits_given(frame: Frame, code: AcceptanceCode, limits: Any) -> dict[str, t
     return stated
 
 
+def of_one_frame(result: Any, who: str) -> None:
+    """Refuse the result of a building where that of a frame is asked for."""
+    if isinstance(result, BuildingResult):
+        name = result.building.planes[0].name
+        raise InputError(
+            f"{who}: it is of a building; give that of one of its frames, as of "
+            f"push.frame({name!r})"
+        )
+
+
 def rows_at(result: FrameResult | BuildingResult, at: Any) -> tuple[float | None, Array]:
     """Return the displacement that is judged, and its row, or all rows.
 

@@ -12,6 +12,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
+from rbsdem.checks.acceptance import of_one_frame
 from rbsdem.checks.target import Target
 from rbsdem.many.ensemble import ensemble
 from rbsdem.motions.motion import GroundMotion, checked_motion
@@ -124,6 +125,7 @@ def check_target(
         Drifts under the records over those of the estimate. A frame without damping gets 5 % in
         all modes, as the spectrum has.
     """
+    of_one_frame(target.pushed, "check_target")
     frame = target.pushed.frame
     estimate = target.drift, target.storey_drift
     if not frame.damped:

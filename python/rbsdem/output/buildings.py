@@ -73,9 +73,12 @@ def plan(
     floors = len(building.storey_heights)
     number = floors if floor is None else floor
     at = _arguments.integer(number, "plot.plan: floor", least=1, most=floors) - 1
-    lines = [plane.places(_along(plane)) for plane in building.planes]
-    corners = building.corners
-    wide, high = np.ptp(corners, axis=0)
+    lines = []
+    for plane in building.planes:
+        along = np.unique(plane.frame.parts.x)
+        lines.append(_in_space(plane, np.column_stack((along, 0.0 * along)))[:, :2])
+    places = np.vstack(lines)
+    wide, high = np.ptp(places, axis=0)
     size = (4.6, float(np.clip(4.6 * high / max(wide, 1e-3) + 0.5, 2.0, 6.0)))
     with axes_or_new(ax, size) as drawn:
         for plane, line in zip(building.planes, lines, strict=True):
@@ -98,7 +101,7 @@ def plan(
         if result is not None:
             row = row_of(result, row)
             path = np.column_stack((result.floor_x[:, at], result.floor_y[:, at]))
-            moved = np.array([result.moved(corner)[row, at] for corner in corners])
+            moved = np.array([result.moved(place)[row, at] for place in places])
             largest = float(np.hypot(*moved.T).max())
             if scale is None:
                 scale = rounded(0.1 * max(wide, high) / largest) if largest > 0 else 1.0
@@ -219,11 +222,6 @@ def _building_of(
         return shown.building, shown
     remedy = "or the result of one"
     return _arguments.instance(shown, who, Building, remedy), None
-
-
-def _along(plane: Plane) -> Array:
-    """Return where the columns of a frame stand along its axis [m]."""
-    return np.unique(plane.frame.parts.x)
 
 
 def _in_space(plane: Plane, points: Array, across: Array | float = 0.0) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
-from rbsdem.checks.acceptance import Assessment
+from rbsdem.checks.acceptance import Assessment, of_one_frame
 from rbsdem.checks.target import Target
 from rbsdem.errors import InputError
 from rbsdem.model.frame import MemberGeometry
@@ -867,6 +867,7 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
         The axes, in m. Members that exceed their shear strength have the colour of the last level.
     """
     _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
+    of_one_frame(found.result, "plot.assessment")
     structure, states = found.result.frame, found.states()
     names = ["no level exceeded", *(f"{name} exceeded" for name in found.levels)]
     names[-1] += ", or shear strength" if found.counts()["shear"] else ""

@@ -193,7 +193,7 @@ def report(
 
     Parameters
     ----------
-    record : Result, FrameResult, Assessment, Section, Ensemble or IDA
+    record : Result, FrameResult, BuildingResult, Assessment, Section, Ensemble or IDA
         What it is about.
     path : path-like
         File to write. In the folder beside it the files of an earlier report are replaced; a file

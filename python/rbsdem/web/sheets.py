@@ -8,7 +8,7 @@ import os
 import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial, singledispatch
 from pathlib import Path
 from typing import Any, get_args
@@ -18,7 +18,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._files import atomic_write, data_frame, figure_bytes
 from rbsdem._types import DataFrame
-from rbsdem.checks.acceptance import Assessment, between, rows_at
+from rbsdem.checks.acceptance import Assessment, between, of_one_frame, rows_at
 from rbsdem.checks.code_values import code_values
 from rbsdem.checks.infills import CHECK_NOTE, infills
 from rbsdem.checks.target import Target
@@ -26,12 +26,13 @@ from rbsdem.errors import InputError
 from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
 from rbsdem.model.shape import Section
-from rbsdem.output import frames, many, section
+from rbsdem.output import buildings, frames, many, section
 from rbsdem.output.loops import history
 from rbsdem.output.style import style
 from rbsdem.output.tables import cells
 from rbsdem.output.units import paper, scales
 from rbsdem.run.analysis import modes
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram
@@ -213,6 +214,29 @@ def _of_result(result: ColumnResult) -> Iterator[Sheet]:
 
 
 @sheets_of.register
+def _of_building(result: BuildingResult) -> Iterator[Sheet]:
+    building = result.building
+    given = inputs(building._groups())
+    about = f"{building!r}: mass {building.parts.mass / 1e3:.4g} t"
+    if building.parts.mass > 0:
+        about += f"; elastic periods {', '.join(f'{t:.3g}' for t in modes(building, 3).period)} s"
+    drawn = [partial(_titled, *one) for one in list(_drawings(building).items())[:_MOST_SECTIONS]]
+    yield Sheet("Inputs", f"{about}.", (partial(buildings.plan, building), *drawn), given, True)
+    largest = int(np.abs(result.displacement).argmax())
+    shapes = (
+        partial(buildings.plan, result, row=largest),
+        partial(buildings.building, result, row=largest),
+    )
+    whole = "At the largest displacement of the roof."
+    yield Sheet("Building", f"{result.scope_note} {whole}", shapes, _summary(result.summary))
+    for name, frame in result.frames.items():
+        # Its inputs are those of the building, and so are its rows.
+        for sheet in list(_of_frame(frame))[1:-1]:
+            yield replace(sheet, heading=f"{name} {sheet.heading}")
+    yield Sheet("Rows", table=result.to_pandas(), beside=True)
+
+
+@sheets_of.register
 def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     yield _of_structure(result.frame)
     largest = int(np.abs(result.displacement).argmax())
@@ -258,6 +282,7 @@ def of_assessment(
 ) -> Iterator[Sheet]:
     """Yield the sheets of an assessment, with the target that it was made at and its check."""
     result = found.result
+    of_one_frame(result, "report")
     yield _of_structure(result.frame)
     curves: list[Callable[[], Any]] = [partial(frames.pushover, result)]
     text = repr(found)
