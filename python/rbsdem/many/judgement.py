@@ -83,7 +83,10 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     if asked(case) and not isinstance(case.column, Frame):
         faults.append("target, assess: they are for frames; remove them from the case of a column")
     if asked(case) and isinstance(case.column, Building):
-        faults.append("target, assess: they are for planar frames; remove them from a building")
+        faults.append(
+            "target, assess: in a case they are for planar frames; remove them from a building, "
+            "and give its push-over to rbsdem.codes.target and assess"
+        )
     if case.target and (case.method != "static" or case.displacement is None):
         faults.append(
             "target: it is that of a push-over; give drive = 'displacement' without times"
