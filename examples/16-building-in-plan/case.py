@@ -53,8 +53,8 @@ assessment = codes.assess(push, "en_1998_3", at=target, limits={"x-1:C-3-*": (0.
 print(assessment)
 
 # One record along x and another along y.
-pair = tuple(motion.scaled(2.0) for motion in rbsdem.motions.synthetic(2))
-quake = rbsdem.time_history(house, pair, method="newmark", dt=0.01)
+ew, ns = (motion.scaled(2.0) for motion in rbsdem.motions.synthetic(2))
+quake = rbsdem.time_history(house, (ew, ns), method="newmark", dt=0.01)
 drifts = 100 * np.abs(quake.corner_drift).max(axis=0)
 print(f"largest drifts of any corner (%): {drifts.round(2)}")
 

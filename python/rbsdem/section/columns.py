@@ -204,7 +204,7 @@ def column(
     if axial_height is not None:
         axial_height = _arguments.number(axial_height, "axial_height")
     if shear_span is not None:
-        shear_span = _arguments.number(shear_span, "shear_span", above=0.0, unit="m")
+        shear_span = column_length(shear_span, "shear_span")
     common = {
         "mass": mass,
         "axial_load": load,
