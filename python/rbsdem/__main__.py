@@ -40,13 +40,26 @@ def _word_of(found: re.Match[str]) -> str:
     return found[0] if found[0][0] != "!" and found[0][1:-1].isidentifier() else ""
 
 
-def case_for_python(words: list[str]) -> str:
-    """Return the path of the case of `run`, `check` or `modes` if Python takes part in it."""
-    path = next((word for word in words[1:] if os.path.isfile(word)), "")
-    if words[:1] not in (["run"], ["check"], ["modes"]) or not path:
-        return ""
+#: Options whose value may be the next word.
+_WITH_VALUE = ("-o", "--output", "--count")
+
+
+def for_python(words: list[str]) -> list[str]:
+    """Return the words of `run`, `check` or `modes` if Python takes part in the case.
+
+    The command and the path of the case come first.
+    """
+    places = [
+        i
+        for i, word in enumerate(words)
+        if not word.startswith("-") and not (i and words[i - 1] in _WITH_VALUE)
+    ]
+    name, path = [*(words[i] for i in places), "", ""][:2]
+    if name not in ("run", "check", "modes") or not os.path.isfile(path):
+        return []
+    ordered = [name, path, *(word for i, word in enumerate(words) if i not in places[:2])]
     if any(word.partition("=")[0] == "--report" for word in words):
-        return path
+        return ordered
     with open(path, encoding="utf-8", errors="replace") as file:
         # Neither comments nor texts are groups.
         text = re.sub(r"""'[^'\n]*'|"[^"\n]*"|!.*""", _word_of, file.read().lower())
@@ -54,7 +67,7 @@ def case_for_python(words: list[str]) -> str:
     drawn = "&frame" in text and any(name in text for name in (*_OF_PYTHON, *_OF_FRAMES))
     # A column of a drawing without the layers of its joints
     drawn |= "&drawing" in text and "&layers" not in text
-    return path if asked or drawn else ""
+    return ordered if asked or drawn else []
 
 
 def main() -> int:
@@ -79,10 +92,10 @@ def main() -> int:
     except FileNotFoundError as error:
         print(error, file=sys.stderr)
         return 2
-    if path := case_for_python(words):
+    if ordered := for_python(words):
         from rbsdem.cli.columns import on_springs  # noqa: PLC0415
 
-        return on_springs(program, words, path)
+        return on_springs(program, *ordered)
     if sys.stdout is not None:  # as it is if it was closed
         sys.stdout.flush()
     if os.name == "nt":  # where a process that is replaced returns to the shell at once

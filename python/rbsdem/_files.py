@@ -146,11 +146,10 @@ def _write_list(path: Path, names: Iterable[str]) -> None:
 
 
 def refuse_other_page(path: Path) -> None:
-    """Refuse to write a page over a file that is none, where the name of it was not asked for."""
+    """Refuse to write a page over a file that is none, as the case itself would be."""
     if path.is_file() and GENERATOR.encode() not in path.read_bytes()[:1000]:
         raise InputError(
-            f"{path} is there and is no report of rbsdem; move it away, or choose another name "
-            "with --output"
+            f"{path} is there and is no report of rbsdem; move it away, or choose another name"
         )
 
 

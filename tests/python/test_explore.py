@@ -836,11 +836,14 @@ def test_a_report_leaves_the_files_of_the_user_alone(tmp_path, capsys):
         rbsdem.report(push, tmp_path / "frame.html")
     assert (tmp_path / "frame.html").read_bytes() == page
     assert (folder / "rows.csv").read_text() == "mine"
-    # So is a page that is no report, where its name was not given.
+    # So is a file that is no report, its own case too.
     (tmp_path / "frame.html").write_text("<p>mine</p>")
     assert main(["report", str(case)]) == 2
     assert "is no report of rbsdem" in capsys.readouterr().err
+    with pytest.raises(rbsdem.InputError, match=r"frame\.nml is there and is no report"):
+        rbsdem.report(push, case)
     assert (tmp_path / "frame.html").read_text() == "<p>mine</p>"
+    assert case.read_text() == mine
 
 
 def test_what_has_no_report_says_so(tmp_path):

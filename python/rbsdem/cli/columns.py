@@ -11,13 +11,14 @@ import threading
 import webbrowser
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, cast
 
 import click
 import numpy as np
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _core
 from rbsdem._files import claim_folder, data_frame, refuse_other_page, save_frame, write_figure
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
@@ -74,7 +75,7 @@ def draw(case: Path) -> int:
     return 0
 
 
-def on_springs(program: str, words: Sequence[str], path: str) -> int:
+def on_springs(program: str, command: str, path: str, *options: str) -> int:
     """Run the executable on a case whose springs, or whose loads, Python makes.
 
     After `run` what the case asks for is done: target displacement, acceptance, the report.
@@ -83,20 +84,21 @@ def on_springs(program: str, words: Sequence[str], path: str) -> int:
     ----------
     program : str
         The executable.
-    words : sequence of str
-        Arguments of the command line, without the one for the report.
-    path : str
-        The one of them that is the case.
+    command, path, *options : str
+        The command line: `run`, `check` or `modes`, the path of the case, the rest.
 
     Returns
     -------
     int
         Exit code.
     """
-    words, page = _without_report(words, path)
+    words, page = _without_report(options, path)
     try:
         case = read_case(path)
-        if words[0] != "modes":
+        _refuse_history(case, path, words)
+        if page:
+            refuse_other_page(Path(page))
+        if command != "modes":
             checked(case)
     except RbsdemError as error:
         lines = str(error).splitlines()
@@ -109,13 +111,12 @@ def on_springs(program: str, words: Sequence[str], path: str) -> int:
     if "initial" in case.settings:
         start = os.path.abspath(case.settings["initial"])
         case = replace(case, settings=case.settings | {"initial": start})
-    names = ["-" if word == path else word for word in words]
     springs = case.to_namelist(springs=True)
     sys.stdout.flush()
     code = subprocess.run(
-        [program, *names, "--as", path], input=springs, check=False, encoding="utf-8"
+        [program, command, "-", *words, "--as", path], input=springs, check=False, encoding="utf-8"
     ).returncode
-    if words[0] != "run" or code not in (0, _COLLAPSED) or not (page or asked(case)):
+    if command != "run" or code not in (0, _COLLAPSED) or not (page or asked(case)):
         return code
     try:
         if not asked(case):
@@ -134,6 +135,23 @@ def on_springs(program: str, words: Sequence[str], path: str) -> int:
         sys.stderr.writelines(f"rbsdem: {line}\n" for line in str(error).splitlines())
         return 2 if isinstance(error, InputError) else 1
     return code
+
+
+def _refuse_history(case: Case, path: str, words: Sequence[str]) -> None:
+    """Refuse rows or a state over a history, of which the executable gets the values alone."""
+    folder = Path(path).parent
+    written = [folder / name for name in case.files.values()]
+    for word, following in pairwise([*words, ""]):
+        option, equal, value = word.partition("=")
+        if option in ("-o", "--output"):
+            written.append(Path(value if equal else following))
+    for name, given in _core.groups(_core.read_groups(path)):
+        for file in written if name == "loading" and "file" in given else ():
+            if file.is_file() and file.samefile(folder / given["file"]):
+                raise InputError(
+                    f"output: {file} is an input of the case and would be written over; choose "
+                    "another file with --output"
+                )
 
 
 def _without_report(words: Sequence[str], path: str) -> tuple[list[str], str]:
@@ -635,8 +653,7 @@ def report(
     Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
     """
     model, file = read_case(case), output or case.with_suffix(".html")
-    if output is None:
-        refuse_other_page(file)
+    refuse_other_page(file)
     if isinstance(model.column, Frame):
         title = title or model.title
         units: Any = tuple(paper.split(","))

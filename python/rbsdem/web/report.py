@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem import _arguments, _core
-from rbsdem._files import claim_folder, save_frame
+from rbsdem._files import claim_folder, refuse_other_page, save_frame
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.output.units import units as paper_units
 from rbsdem.run.case import Case, case_of
@@ -116,6 +116,7 @@ def write_report(
     answers : Answers, optional
         Those that have the tests and the records of the state.
     """
+    refuse_other_page(Path(path))
     data = report_data(state, title, near, answers=answers)
     return write(path, one_file(title, data, sheets=(head(title, author, project, None), "")))
 
@@ -196,8 +197,8 @@ def report(
     record : Result, FrameResult, BuildingResult, Assessment, Section, Ensemble or IDA
         What it is about.
     path : path-like
-        File to write. In the folder beside it the files of an earlier report are replaced; a file
-        that rbsdem did not write there is refused, not written over.
+        File to write. It and the files of the folder beside it replace those of an earlier report;
+        a file that rbsdem did not write is refused, not written over.
     title, author, project, date : str, optional
         For its head; the date is that of today.
     units : tuple of str, optional
@@ -240,6 +241,7 @@ def write_record(
         )
     case = case_of(record) if isinstance(record, ColumnResult | FrameResult) else None
     target = Path(path)
+    refuse_other_page(target)
     title = title or (case.title if case else "") or target.stem
     data = _column_data(record, case, title) if case and isinstance(record, ColumnResult) else None
     with paper_units(*units):
