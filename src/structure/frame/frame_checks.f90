@@ -64,7 +64,7 @@ contains
          end if
       end do
       do i = 1, size(record%spring)
-         call check_spring(record%spring(i), record%kind%name, messages)
+         call check_spring(record%spring(i), record%kind, messages)
       end do
    end subroutine check_values
 
@@ -118,10 +118,9 @@ contains
    end subroutine check_infills
 
    !> A spring stands in one place, where its rule may be used.
-   subroutine check_spring(s, kinds, messages)
+   subroutine check_spring(s, kind_of, messages)
       type(frame_spring), intent(inout) :: s
-      !> Names of the kinds of members
-      character(len=*), intent(in) :: kinds(:)
+      type(kind_record), intent(in) :: kind_of(:)
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: name, from
       integer :: kind
@@ -137,7 +136,7 @@ contains
          return
       else if (s%kind /= '') then
          name = name//"member_kind '"//trim(s%kind)//"'"
-         call check_reference(s%kind, kinds, name, 'kind', messages)
+         call check_reference(s%kind, kind_of%name, name, 'kind', messages)
       else
          name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
       end if
