@@ -136,7 +136,7 @@ contains
          return
       else if (s%kind /= '') then
          name = name//"member_kind '"//trim(s%kind)//"'"
-         call check_reference(s%kind, kind_of%name, name, 'kind', messages)
+         call check_reference(s%kind, [kind_of%name], name, 'kind', messages)
       else
          name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
       end if
