@@ -419,15 +419,20 @@ contains
 
    contains
 
+      !> A pivot that is round-off of zero takes its size. By a smaller one the solution goes so far along the
+      !> direction without stiffness that the digits of all others are lost.
       subroutine solve_with_pivots()
          real(wp) :: right(self%size, m)
 
          right = b
-         if (.not. self%has_pivots) call mirror(0.0_wp)
+         if (.not. self%has_pivots) call mirror()
          call solve()
-         if (regular) return
+         associate (pivot => self%general(2*self%width + 1, :))
+            if (.not. (allocated(self%scale) .and. any(abs(pivot) < round_off))) return
+            where (abs(pivot) < round_off) pivot = sign(round_off, pivot)
+         end associate
          b = right
-         call mirror(round_off)
+         self%has_pivots = .true.
          call solve()
       end subroutine solve_with_pivots
 
@@ -438,9 +443,7 @@ contains
       end subroutine solve
 
       !> The band as elimination with pivots takes it, both triangles.
-      subroutine mirror(extra)
-         !> Added to the diagonal, where it is of the order of one
-         real(wp), intent(in) :: extra
+      subroutine mirror()
          integer :: i, j, main
 
          main = 2*self%width + 1
@@ -449,7 +452,7 @@ contains
          end if
          self%general = 0.0_wp
          do j = 1, self%size
-            self%general(main, j) = self%band(1, j) + extra
+            self%general(main, j) = self%band(1, j)
             do i = j + 1, min(j + self%width, self%size)
                self%general(main + i - j, j) = self%band(1 + i - j, j)
                self%general(main + j - i, i) = self%band(1 + i - j, j)

@@ -114,22 +114,28 @@ contains
       end do
    end subroutine indefinite_with_border
 
-   !> (1 0; 0 0) has no inverse, with the border (0 1) it has.
+   !> (1 0; 0 p) has no inverse for p = 0, with a border it has, and a pivot p far below round-off changes
+   !> nothing.
    subroutine bordered(error)
       type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: p(4) = [0.0_wp, 1.0e-20_wp, 1.0e-28_wp, -1.0e-28_wp]
       type(band_matrix) :: a
       real(wp) :: x(2), y
+      integer :: i
       logical :: regular
 
-      call a%create(2, 1, stiffness=[1.0_wp, 4.0_wp])
-      a%band(1, 1) = 1.0_wp
-      call a%factor()
-      call check_true(error, .not. a%positive, 'no inverse')
-      call a%set_border([0.0_wp, 1.0_wp], regular=regular)
-      call check_true(error, regular, 'border')
-      call a%solve_bordered([3.0_wp, -5.0_wp], 7.0_wp, x, y, regular)
-      call check_true(error, regular, 'regular')
-      call check_close(error, [x, y], [3.0_wp, 7.0_wp, 5.0_wp], 1.0e-12_wp, 0.0_wp, 'solution')
+      do i = 1, size(p)
+         call a%create(2, 1, stiffness=[1.0_wp, 4.0_wp])
+         a%band(1, :) = [1.0_wp, p(i)]
+         call a%factor()
+         call check_true(error, .not. a%positive, 'no inverse')
+         call a%set_border([0.1_wp, 0.3_wp], [0.7_wp, 1.1_wp], regular)
+         call check_true(error, regular, 'border')
+         ! x = (1, 2) and y = 0.9 solve it.
+         call a%solve_bordered([0.91_wp, -0.27_wp], 2.9_wp, x, y, regular)
+         call check_true(error, regular, 'regular')
+         call check_close(error, [x, y], [1.0_wp, 2.0_wp, 0.9_wp], 1.0e-14_wp, 0.0_wp, 'solution')
+      end do
    end subroutine bordered
 
    subroutine tridiagonal(error)
