@@ -2,7 +2,7 @@
 !> balance its springs, its second-order forces and its elastic energy.
 module rbs_structure_frame_element_balance
    use rbs_base_kinds, only: wp
-   use rbs_base_tolerances, only: round_off_of_rates
+   use rbs_base_tolerances, only: round_off_of_rates, round_off_of_sums
    use rbs_structure_condensation, only: series_tangent
    use rbs_structure_frame_element, only: frame_element, element_joint, most_columns
    implicit none
@@ -129,6 +129,7 @@ contains
       real(wp), intent(out) :: s(3)
       !> (coordinates)
       real(wp), intent(inout), contiguous :: correction(:)
+      real(wp) :: pair(2)
       integer :: j
 
       do j = 1, size(e%joint)
@@ -136,7 +137,10 @@ contains
             if (of%is_single) then
                correction(at) = f(i) - dead*dead_force(i)
             else
-               correction(at:at + 1) = pair_forces(of, f(i:i + 1), dead, tangent%turn(:, j))
+               pair = pair_forces(of, f(i:i + 1), dead, tangent%turn(:, j))
+               ! Layers that yield would move far for the round-off of the sum of their forces.
+               if (tangent%is_mechanism) where (abs(pair) <= round_off_of_sums*sum(abs(pair))) pair = 0.0_wp
+               correction(at:at + 1) = pair
             end if
          end associate
       end do
