@@ -461,8 +461,8 @@ def measures() -> tuple[str, ...]:
     return tuple(_names()[1].split())
 
 
-#: Motions of the ground: times [s] and accelerations [m/s2].
-Motions = Sequence[tuple[Array, Array]]
+#: Motions of the ground: times [s] and accelerations along x and y [m/s2].
+Motions = Sequence[tuple[Array, Array, Array]]
 
 _AFTER, _AFTER_NUMBER = "\x1e", "\x1f"
 
@@ -478,7 +478,8 @@ def batch(
 
     `thresholds` are those of each column, of shape (m, 6): number of the limit state, joint,
     factors of slip, rotation and opening, threshold; at least one. `before` are the states that the
-    runs of each column begin in; an empty one is at rest.
+    runs of each column begin in; an empty one is at rest. `motions` are times and accelerations
+    along x and y, those along y empty if there are none.
     """
     statements = [column + settings for column in columns]
     sizes = zip(statements, thresholds, before, strict=True)
@@ -492,9 +493,10 @@ def batch(
         ],
         "watches": np.concatenate(thresholds),
         "before": np.concatenate(before),
-        "time": np.concatenate([time for time, _ in motions]),
-        "acceleration": np.concatenate([acceleration for _, acceleration in motions]),
-        "points": [time.size for time, _ in motions],
+        "time": np.concatenate([time for time, *_ in motions]),
+        "acceleration": np.concatenate([along_x for _, along_x, _ in motions]),
+        "across": np.concatenate([along_y for *_, along_y in motions]),
+        "points": [(time.size, along_y.size) for time, _, along_y in motions],
     }
 
 

@@ -110,23 +110,30 @@ contains
       if (text%length > 0) answer%text = text%text(:text%length)
    end subroutine run_ensemble
 
-   !> The motions follow each other in the arrays; `points` has the number of points of each.
+   !> The motions follow each other in the arrays; `points` has the number of points of each, along x and
+   !> along y, where that is none or as many.
    subroutine take_motions(request, motion)
       type(request_type), intent(in) :: request
       type(ensemble_motion), allocatable, intent(out) :: motion(:)
-      real(c_double), pointer, contiguous :: points(:), time(:), acceleration(:)
-      integer :: j, first, last
+      real(c_double), pointer, contiguous :: points(:), time(:), acceleration(:), across(:)
+      integer :: j, first, last, last_across
 
       points => request%array('points')
       time => request%array('time')
       acceleration => request%array('acceleration')
-      allocate (motion(size(points)))
+      across => request%array('across')
+      allocate (motion(size(points)/2))
       last = 0
-      do j = 1, size(points)
+      last_across = 0
+      do j = 1, size(motion)
          first = last + 1
-         last = last + nint(points(j))
+         last = last + nint(points(2*j - 1))
          motion(j)%time = time(first:last)
          motion(j)%acceleration = acceleration(first:last)
+         if (nint(points(2*j)) == 0) cycle
+         first = last_across + 1
+         last_across = last_across + nint(points(2*j))
+         motion(j)%across = across(first:last_across)
       end do
    end subroutine take_motions
 

@@ -268,6 +268,118 @@ def test_what_is_of_one_frame_refuses_a_building(pushed, tmp_path):
             draw(found)
 
 
+SHAKEN = {"method": "newmark", "dt": 0.01}
+
+
+def swings(number, size=200):
+    """Motions of two frequencies, of unlike lengths, names and peaks."""
+    time = 0.01 * np.arange(size)
+    values = np.sin((5.0 + number) * time) + 0.5 * np.sin((23.0 - 2.0 * number) * time)
+    return rbsdem.GroundMotion((2.0 + number) * values, 0.01, f"swing {number}")
+
+
+@pytest.fixture(scope="module")
+def house():
+    """A storey that yields along x and y, in all its frames."""
+    return eccentric_storey().changed(floor_mass=2e5, inertia=8e6, damping=0.03)
+
+
+def test_runs_of_pairs_are_those_of_one_by_one(house, tmp_path):
+    x, y, z = swings(0), swings(1, size=150), swings(2)
+    pairs = {"first": (x, y), "second": (y, x), "third": (x, z), "alone": x}
+    scales = [0.5, 3.0]
+    settings = SHAKEN | {"store": tmp_path}
+    runs = rbsdem.ensemble(house, pairs, scales=scales, **settings)
+    for run, (motion, scale) in enumerate(zip(runs.motion, runs.scale, strict=True)):
+        record = list(pairs.values())[motion]
+        parts = record if isinstance(record, tuple) else (record,)
+        scaled = [replace(part, acceleration=scale * part.acceleration) for part in parts]
+        loading = tuple(scaled) if len(scaled) == 2 else scaled[0]
+        alone = rbsdem.time_history(house, loading, collapse_drift=0.1, **SHAKEN)
+        assert np.array_equal(runs.history(run).displacement, alone.displacement)
+        assert np.array_equal(runs.history(run).floor_y, alone.floor_y)
+        of_frames = [abs(frame.storey_drift).max() for frame in alone.frames.values()]
+        assert runs.measures["peak_storey_drift"][run] == pytest.approx(max(of_frames), rel=1e-12)
+        for name in ("peak_displacement", "peak_base_shear"):
+            assert runs.measures[name][run] == alone.summary[name]
+    # What is kept of one pair is not that of another with the same motion along x.
+    again = rbsdem.ensemble(house, [(x, swings(3)), (x, y)], scales=scales, **settings)
+    assert again.resumed == 2
+    assert list(again.motions) == ["swing 0 and swing 3", "swing 0 and swing 1"]
+
+
+def test_the_intensity_of_a_pair_is_of_both_components(house, tmp_path):
+    pairs = {"a": (swings(0), swings(1)), "b": (swings(2), swings(0))}
+    period = 1.0 / rbsdem.modes(house).frequency[0]
+    each = np.array([[part.sa(period) for part in pair] for pair in pairs.values()])
+    wanted = {"larger": each.max(axis=1), "geometric_mean": np.sqrt(each.prod(axis=1))}
+    for name, unit in wanted.items():
+        found = rbsdem.ida(house, pairs, levels=[2.0, 30.0], intensity=name, **SHAKEN)
+        runs = found.runs
+        np.testing.assert_allclose(runs.scale, runs.intensity / unit[runs.motion], rtol=1e-12)
+        usual = name.replace("_", " ") if name == "geometric_mean" else "larger component"
+        assert usual in runs.measure.label
+    default = rbsdem.ida(house, pairs, levels=[2.0, 30.0], **SHAKEN).runs
+    assert np.array_equal(default.scale, runs.scale)
+    peaks = rbsdem.ida(house, pairs, levels=[2.0], intensity="pga", **SHAKEN).runs.scale
+    both = [np.sqrt(x.pga * y.pga) for x, y in pairs.values()]
+    np.testing.assert_allclose(peaks, 2.0 / np.array(both), rtol=1e-12)
+    drift = found.runs.measures["peak_storey_drift"]
+    limit = np.sqrt(drift.min() * drift.max())
+    assert 2.0 < found.fragility("peak_storey_drift", limit, beta=0.4).theta < 30.0
+    text = rbsdem.report(found, tmp_path / "ida.html").read_text()
+    assert "geometric mean" in text
+    # A factor of both: a pair of twice the size is the same record.
+    twice = {
+        name: tuple(replace(part, acceleration=2.0 * part.acceleration) for part in pair)
+        for name, pair in pairs.items()
+    }
+    same = rbsdem.ida(house, twice, levels=[2.0, 30.0], **SHAKEN).runs
+    assert np.array_equal(same.measures["peak_storey_drift"], drift)
+
+
+def coarse(motion):
+    return rbsdem.motions.resampled(motion, 0.02)
+
+
+def planar():
+    return sprung_storey(Elastic(1e7), mass=1e3, load=1e4)
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda h: rbsdem.ensemble(h, (swings(0), swings(1))), "motions is a tuple of two"),
+        (lambda h: rbsdem.ida(h, (swings(0), swings(1))), "motions is a tuple of two"),
+        (
+            lambda h: rbsdem.fragility.stripes(h, {2.0: (swings(0), swings(1))}),
+            "motions is a tuple of two",
+        ),
+        (
+            lambda h: rbsdem.ensemble(planar(), [(swings(0), swings(1))], **SHAKEN),
+            "nothing of it moves along y",
+        ),
+        (
+            lambda h: rbsdem.ida(planar(), [(swings(0), swings(1))], **SHAKEN),
+            "nothing of it moves along y",
+        ),
+        (
+            lambda h: rbsdem.ensemble(h, [(swings(0), coarse(swings(1)))]),
+            "motion 'swing 0 and swing 1': .*steps differ",
+        ),
+        (lambda h: rbsdem.ensemble(h, [[swings(0), swings(1)]]), "a list is not a motion"),
+        (lambda h: rbsdem.ida(h, [swings(0)], intensity="larger"), "'larger' is of pairs"),
+        (
+            lambda h: rbsdem.ensemble(h.changed(collapse="roof"), [(swings(0), swings(1))]),
+            "column 0: collapse = 'roof' is a drift along one direction",
+        ),
+    ],
+)
+def test_pairs_that_cannot_be_run_are_refused(house, call, told):
+    with pytest.raises(rbsdem.InputError, match=told):
+        call(house)
+
+
 REFUSED = [
     (lambda f: rbsdem.Building([(f, 0.0, 3.0)]), "floor 1: the planes leave it free to turn"),
     (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
@@ -296,7 +408,7 @@ REFUSED = [
 @pytest.mark.parametrize(("made", "told"), REFUSED)
 def test_refusals_name_the_fault(made, told):
     with pytest.raises(rbsdem.InputError, match=told):
-        made(sprung_storey(Elastic(1e7), mass=1e3, load=1e4))
+        made(planar())
 
 
 ELASTIC = FrameMember(3e10, 0.16, 2e-3)

@@ -191,7 +191,8 @@ class Ensemble(Tabular):
     columns : dict
         The columns by their names.
     motions : dict
-        The motions by their names, with `time` [s] and `acceleration` [m/s2].
+        The motions by their names, with `time` [s], `acceleration` [m/s2], and `across` [m/s2]
+        along y (empty without).
     settings : dict
         The settings of the analysis that were given, as keywords of `time_history`.
     initial : dict of ndarray
@@ -359,7 +360,9 @@ def ensemble(
         The columns; without names they are numbered from 0.
     motions : motion, sequence or mapping of motions
         A motion has `time` [s] and `acceleration` [m/s2], and perhaps a `name`, as `GroundMotion`
-        does, or is a pair of times (or one step) and accelerations.
+        does, or is a pair of times (or one step) and accelerations. Two `GroundMotion` that shake
+        a building at once along x and y are a tuple, ``[(east_west, north_south), ...]``: one
+        factor scales both, and the shorter one is followed by rest, as in `time_history`.
     scales : array_like, optional
         Factors of the accelerations: shape (k,) for all, (motions, k) or (columns, motions, k).
         NaN stands for no run.
@@ -418,7 +421,9 @@ def ensemble(
     settings = {name: _plain(value) for name, value in settings.items()}
     faults: list[str] = []
     column_names, column_items = inputs.named_columns(columns, faults)
-    number, motion_items = inputs.named_motions(motions, faults)
+    number, motion_items = inputs.named_motions(motions, column_items, faults)
+    if collapse_drift is not None:
+        inputs.check_collapse(column_names, column_items, motion_items, faults)
     before = inputs.states_of_columns(initial, column_names, faults)
     full = inputs.scale_array(scales, len(column_names), number, faults)
     names: tuple[str, ...] = ()

@@ -34,7 +34,7 @@ from rbsdem.many.runs import (
     motions_by_name,
     own_records,
 )
-from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.motion import GroundMotion, Record, is_pair
 from rbsdem.section.criteria import WATCHED
 from rbsdem.section.frame import Frame, Structure
 from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
@@ -348,7 +348,7 @@ class IDA(WithFragility):
 
 def ida(
     column: Structure | Sequence[Structure] | Mapping[str, Structure],
-    motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
+    motions: GroundMotion | Sequence[Record] | Mapping[str, Record],
     *,
     levels: ArrayLike | Literal["search"] | CollapseSearch = "search",
     refine: Sequence[str] | None = None,
@@ -362,7 +362,8 @@ def ida(
     column : Column or Frame, or sequence or mapping of them
         The column; several are all run with every motion.
     motions : GroundMotion, or sequence or mapping of GroundMotion
-        The records, whose own scale does not matter.
+        The records, whose own scale does not matter; of a building also pairs of motions along x
+        and y, ``[(east_west, north_south), ...]``, each of which one factor scales.
     levels : array_like, "search" or CollapseSearch, optional
         Intensities of the runs [m/s2], or a search for the collapse of each record, whose
         settings are those of `CollapseSearch`.
@@ -405,7 +406,7 @@ def ida(
     if "measures" in options:
         options["measures"] = _with_drift(options["measures"], column)
     search = _search_of(levels)
-    records = own_records(motions_by_name(motions), options)
+    records = own_records(motions_by_name(motions, column), options)
     work = make_collector("ida", column, records, **options)
     named = {name for name in work.names if isinstance(name, str)}
     refined = _refined(refine, named)
@@ -584,8 +585,8 @@ def stripes(
     column : Column or Frame, or sequence or mapping of them
         The column, or several, which are all run with every motion.
     motions : sequence or mapping of GroundMotion, or mapping of sequences
-        The records; or for each level [m/s2] its own ones, as ``{2.0: [...], 4.0: [...]}``, scaled
-        to it.
+        The records, or pairs of them as for `rbsdem.ida`; or for each level [m/s2] its own ones, as
+        ``{2.0: [...], 4.0: [...]}``, scaled to it.
     levels : array_like, shape (k,), optional
         Intensities of the runs [m/s2], unless the motions come by level.
     **options
@@ -602,11 +603,11 @@ def stripes(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    by_level = _by_level(motions)
+    by_level = _by_level(motions, column)
     if by_level is None:
         if levels is None:
             raise InputError("stripes: levels are missing; give intensities in m/s2")
-        records, wanted = motions_by_name(motions), checked_levels(levels)
+        records, wanted = motions_by_name(motions, column), checked_levels(levels)
         at = wanted
     else:
         if levels is not None:
@@ -621,19 +622,24 @@ def stripes(
     return Stripes(work.finish(), at, by_level is None, time.perf_counter() - begin)
 
 
-def _by_level(motions: Any) -> dict[float, dict[str, GroundMotion]] | None:
+def _by_level(motions: Any, column: Any) -> dict[float, dict[str, Record]] | None:
     """Return the motions of each level, or None if they are the same for all."""
     if not isinstance(motions, Mapping) or not motions:
         return None
-    if all(isinstance(motion, GroundMotion) for motion in motions.values()):
+    # A pair has a name; two records of a level have a number.
+    if all(
+        isinstance(each, GroundMotion) or (is_pair(each) and isinstance(name, str))
+        for name, each in motions.items()
+    ):
         return None
     levels = [_arguments.number(level, "stripes: level") for level in motions]
-    return dict(zip(levels, map(motions_by_name, motions.values()), strict=True))
+    of_levels = (motions_by_name(each, column) for each in motions.values())
+    return dict(zip(levels, of_levels, strict=True))
 
 
 def _records_of_levels(
-    by_level: dict[float, dict[str, GroundMotion]],
-) -> tuple[dict[str, GroundMotion], Array]:
+    by_level: dict[float, dict[str, Record]],
+) -> tuple[dict[str, Record], Array]:
     """Return all motions, named after their levels, and the level of each, shape (motions, 1)."""
     records, levels = {}, []
     for level, motions in by_level.items():

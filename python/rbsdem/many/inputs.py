@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, TypeAlias
 from unicodedata import category
@@ -17,10 +17,12 @@ from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
+from rbsdem.motions.motion import acting, is_pair
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.solve import state_of
 from rbsdem.section.criteria import WATCHED
 from rbsdem.section.frame import Frame, Structure, checked_structure
+from rbsdem.section.plan import Building
 
 #: The state of a column at rest.
 AT_REST: Array = np.empty(0)
@@ -28,11 +30,15 @@ AT_REST: Array = np.empty(0)
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Times [s] and accelerations [m/s2] of a motion of the ground, under a name."""
+    """Times [s] and accelerations [m/s2] of a motion of the ground, under a name.
+
+    `across` are accelerations along y, of a pair of motions; empty without.
+    """
 
     name: str | int
     time: Array
     acceleration: Array
+    across: Array = field(default_factory=lambda: np.empty(0))
 
 
 def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], list[Structure]]:
@@ -47,12 +53,17 @@ def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], lis
     return names, items
 
 
-def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
-    """Return how many motions are given, and those that are right.
+def named_motions(
+    motions: Any, columns: Iterable[Any], faults: list[str]
+) -> tuple[int, list[Motion]]:
+    """Return how many motions of columns are given, and those that are right.
 
-    A motion is an object with time and acceleration, or a pair of times (or one step) and
-    accelerations. Without names of their own they are numbered from 0.
+    A motion is an object with time and acceleration, a pair of times (or one step) and
+    accelerations, or a pair of `GroundMotion` along x and y. Without names of their own they are
+    numbered from 0.
     """
+    with _arguments.collected(faults):
+        check_not_one_pair(motions, columns)
     if hasattr(motions, "acceleration") or _is_pair(motions):
         motions = [motions]
     names, items = named(motions, "motions", "motion", faults)
@@ -75,8 +86,36 @@ def named(
     except TypeError:
         faults.append(f"{what} = {type(several).__name__} must be a {kind}, or several of them")
         return [], []
-    names = (getattr(item, "name", None) for item in items)
+    names = (_name_of(item) for item in items)
     return [name if isinstance(name, str) and name else i for i, name in enumerate(names)], items
+
+
+def _name_of(item: Any) -> Any:
+    if not is_pair(item):
+        return getattr(item, "name", None)
+    x, y = item
+    return f"{x.name} and {y.name}" if x.name and y.name else None
+
+
+def check_not_one_pair(motions: Any, columns: Iterable[Any]) -> None:
+    """Raise `InputError` for two motions of a building that may be meant as one pair."""
+    if is_pair(motions) and any(isinstance(column, Building) for column in columns):
+        raise InputError(
+            "motions is a tuple of two; give [(east_west, north_south)] for a pair along x and y "
+            "at once, or a list of two for two records along x"
+        )
+
+
+def check_collapse(
+    names: list[str | int], columns: list[Structure], motions: list[Motion], faults: list[str]
+) -> None:
+    """Add a fault for a building under pairs of motions whose collapse is judged along one axis."""
+    by_roof = [getattr(column, "collapse", "") == "roof" for column in columns]
+    if any(by_roof) and any(motion.across.size for motion in motions):
+        faults.append(
+            f"column {names[by_roof.index(True)]!r}: collapse = 'roof' is a drift along one "
+            "direction, and motions come in pairs; take collapse = 'storey', or collapse_drift=None"
+        )
 
 
 def check_names(names: list[str | int], what: str, kind: str, faults: list[str]) -> None:
@@ -103,14 +142,18 @@ def _is_pair(item: Any) -> bool:
 
 
 def _motion(name: str | int, item: Any) -> Motion:
+    if is_pair(item):
+        pair = dict(zip(("ground_acceleration", "ground_acceleration_y"), item, strict=True))
+        times, loads = acting(None, pair, "a pair of motions")
+        return Motion(name, *map(np.asarray, (times, *loads.values())))
     if hasattr(item, "time") and hasattr(item, "acceleration"):
         times, values = item.time, item.acceleration
     elif _is_pair(item):
         times, values = item
     else:
         raise InputError(
-            f"a {type(item).__name__} is not a motion; give a GroundMotion, or a pair of times (or "
-            "one step) [s] and accelerations [m/s2]"
+            f"a {type(item).__name__} is not a motion; give a GroundMotion, a pair of times (or "
+            "one step) [s] and accelerations [m/s2], or a tuple of two GroundMotion along x and y"
         )
     acceleration = _arguments.finite_vector(values, "acceleration")
     if isinstance(times, (int, float)):

@@ -159,7 +159,7 @@ def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
 
 def _batch(plan: Plan, thresholds: list[Array]) -> dict[str, Any]:
     columns = [column._statement for column in plan.columns]
-    motions = [(motion.time, motion.acceleration) for motion in plan.motions]
+    motions = [(motion.time, motion.acceleration, motion.across) for motion in plan.motions]
     return _core.batch(columns, _core.settings(plan.settings), thresholds, plan.before, motions)
 
 
@@ -234,8 +234,10 @@ def one_run(
     springs = column.joints("flexure") if isinstance(column, Column) else ()
     settings = settings | {"openings": any(isinstance(each, Layered) for each in springs)}
     settings["initial"] = initial if initial.size else None
-    ground = scale * motion.acceleration
-    return time_history(column, motion.time, ground_acceleration=ground, **settings)
+    ground: dict[str, Any] = {"ground_acceleration": scale * motion.acceleration}
+    if motion.across.size:
+        ground["ground_acceleration_y"] = scale * motion.across
+    return time_history(column, motion.time, **ground, **settings)
 
 
 def watched(column: Structure, states: tuple[str, ...]) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,7 +19,7 @@ from rbsdem.many import inputs
 from rbsdem.many.ensemble import checked_part, ensemble
 from rbsdem.many.plan import FAULT_OF_MEASURE, Share
 from rbsdem.model.column import Column
-from rbsdem.motions.motion import GroundMotion, checked_motion
+from rbsdem.motions.motion import GroundMotion, Record, checked_motion, components, is_pair
 from rbsdem.run.analysis import modes
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 from rbsdem.section.criteria import WATCHED
@@ -26,6 +27,9 @@ from rbsdem.section.frame import Frame, Structure
 
 Name = Literal["sa_t1", "pga", "sa_avg"]
 NAMES: tuple[Name, ...] = ("sa_t1", "pga", "sa_avg")
+#: Spectral acceleration of pairs of motions, by how the two make one.
+OfPairs = Literal["geometric_mean", "larger"]
+OF_PAIRS: tuple[OfPairs, ...] = ("geometric_mean", "larger")
 
 #: Periods of the mean spectral acceleration as parts of the first one (Eads et al. 2015), and how
 #: many there are, evenly spaced.
@@ -45,14 +49,23 @@ class Intensity:
         The period [s]; 0 for "pga".
     damping : float
         Damping ratio of the spectrum.
+    pairs : {"", "geometric_mean", "larger"}
+        Which of the intensities of both components is that of a pair; "" without pairs.
     """
 
     name: Name
     period: float
     damping: float
+    pairs: Literal["", OfPairs] = ""
 
-    def of(self, motion: GroundMotion) -> float:
-        """Return the intensity of a motion at scale 1 [m/s2]."""
+    def of(self, record: Record) -> float:
+        """Return the intensity of a record at scale 1 [m/s2]."""
+        each = [self._of_motion(motion) for motion in components(record)]
+        if self.pairs == "larger" or len(each) == 1:
+            return max(each)
+        return math.sqrt(math.prod(each))
+
+    def _of_motion(self, motion: GroundMotion) -> float:
         if self.name == "pga":
             return motion.pga
         if self.name == "sa_t1":
@@ -62,36 +75,50 @@ class Intensity:
     @property
     def label(self) -> str:
         """Name with unit, for figures and tables."""
+        of_pairs = {"": "", "geometric_mean": ", geometric mean", "larger": ", larger component"}
+        unit = f"{of_pairs[self.pairs]} (m/s²)"
         if self.name == "pga":
-            return "PGA (m/s²)"
+            return f"PGA{unit}"
         mean = "Sa,avg" if self.name == "sa_avg" else "Sa"
-        return f"{mean}({self.period:.3g} s, {100 * self.damping:g} %) (m/s²)"
+        return f"{mean}({self.period:.3g} s, {100 * self.damping:g} %){unit}"
 
 
-def make_intensity(name: str, column: Structure, period: float | None, damping: float) -> Intensity:
+def make_intensity(
+    name: str, column: Structure, period: float | None, damping: float, records: Iterable[Record]
+) -> Intensity:
     """Return an intensity measure; its period is that of the column unless one is given."""
-    name = _arguments.choice(name, "intensity", NAMES)
+    several = any(map(is_pair, records))
+    if name in OF_PAIRS and not several:
+        raise InputError(
+            f"intensity: {name!r} is of pairs of motions; give [(east_west, north_south), ...], or "
+            "take 'sa_t1'"
+        )
+    name = _arguments.choice(name, "intensity", (*NAMES, *OF_PAIRS) if several else NAMES)
+    pairs: Literal["", OfPairs] = "geometric_mean" if several else ""
+    if name in OF_PAIRS:
+        pairs, name = "larger" if name == "larger" else pairs, "sa_t1"
     if name == "pga":
         if period is not None:
             raise InputError("intensity: 'pga' has no period; leave period out, or take 'sa_t1'")
-        return Intensity("pga", 0.0, 0.0)
+        return Intensity("pga", 0.0, 0.0, pairs)
     at = 1 / float(modes(column).frequency[0]) if period is None else period
     at = _arguments.number(at, "period", above=0, below=100, unit="s")
     hint = "; it is a ratio, 5 % is 0.05"
     ratio = _arguments.number(damping, "damping", least=0.0, most=1.0, hint=hint)
-    return Intensity("sa_t1" if name == "sa_t1" else "sa_avg", at, ratio)
+    return Intensity("sa_t1" if name == "sa_t1" else "sa_avg", at, ratio, pairs)
 
 
-def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
-    """Return motions under their names, or raise `InputError` with all that is wrong."""
+def motions_by_name(motions: Any, columns: Any) -> dict[str, Record]:
+    """Return motions of columns by name, or raise `InputError` with all that is wrong."""
+    inputs.check_not_one_pair(motions, columns_by_name(columns).values())
     faults: list[str] = []
     several = [motions] if isinstance(motions, GroundMotion) else motions
     names, items = inputs.named(several, "motions", "GroundMotion", faults)
-    by_name: dict[str, GroundMotion] = {}
+    by_name: dict[str, Record] = {}
     for name, item in zip(names, items, strict=True):
         with _arguments.collected(faults):
-            motion = by_name[str(name)] = checked_motion(item, f"motion {name}: ")
-            if motion.pga == 0:
+            by_name[str(name)] = item if is_pair(item) else checked_motion(item, f"motion {name}: ")
+            if all(motion.pga == 0 for motion in components(by_name[str(name)])):
                 raise InputError(f"motion {name}: has no acceleration")
     inputs.check_names(names, "motions", "motion", faults)
     _arguments.raise_faults(faults)
@@ -125,9 +152,11 @@ class RunOptions(Solver, total=False):
 
     Attributes
     ----------
-    intensity : {"sa_t1", "pga", "sa_avg"}
+    intensity : {"sa_t1", "pga", "sa_avg", "geometric_mean", "larger"}
         Intensity measure [m/s2]: pseudo-spectral acceleration at the first period (the default),
         peak acceleration, or geometric mean of spectral accelerations from 0.2 to 3 first periods.
+        Of a pair of motions each is the geometric mean of both components; "geometric_mean" is
+        "sa_t1" by its full name, "larger" that of the component where it is larger.
     period : float
         Period of the intensity [s], by default the first one of the (first) column, uncracked.
     damping : float
@@ -153,7 +182,7 @@ class RunOptions(Solver, total=False):
         A cluster, as for `rbsdem.ensemble`.
     """
 
-    intensity: Name
+    intensity: Name | OfPairs
     period: float | None
     damping: float
     collapse_drift: float
@@ -175,7 +204,7 @@ class Runs(Tabular):
     columns : dict
         Columns by name.
     motions : dict
-        Motions by name, at scale 1.
+        Motions by name, or pairs of them, at scale 1.
     measure : Intensity
         The intensity measure.
     column, motion : ndarray of int, shape (runs,)
@@ -189,7 +218,7 @@ class Runs(Tabular):
     """
 
     columns: Mapping[str | int, Structure]
-    motions: Mapping[str, GroundMotion]
+    motions: Mapping[str, Record]
     measure: Intensity
     column: NDArray[np.int_]
     motion: NDArray[np.int_]
@@ -270,7 +299,7 @@ class Collector:
     """
 
     columns: Mapping[str | int, Structure]
-    motions: Mapping[str, GroundMotion]
+    motions: Mapping[str, Record]
     measure: Intensity
     names: Sequence[Any]
     settings: dict[str, Any]
@@ -403,9 +432,9 @@ _KEPT = ("collapse_drift", "initial", "jobs", "progress", "store", "shard", "cli
 def make_collector(
     who: str,
     columns: Structure | Sequence[Structure] | Mapping[str, Structure],
-    motions: Mapping[str, GroundMotion],
+    motions: Mapping[str, Record],
     *,
-    intensity: Name = "sa_t1",
+    intensity: Name | OfPairs = "sa_t1",
     period: float | None = None,
     damping: float = 0.05,
     collapse_drift: float = COLLAPSE_DRIFT,
@@ -420,7 +449,8 @@ def make_collector(
 ) -> Collector:
     """Return the collector of an analysis; the keywords are those of `RunOptions`."""
     named = columns_by_name(columns)
-    measure = make_intensity(intensity, next(iter(named.values())), period, damping)
+    first = next(iter(named.values()))
+    measure = make_intensity(intensity, first, period, damping, motions.values())
     settings = {"method": "auto"} | checked_solver(solver, who)
     settings |= {
         "collapse_drift": _arguments.number(
@@ -443,7 +473,7 @@ def make_collector(
     return Collector(named, motions, measure, inputs.measures_in_a_list(measures), settings, who)
 
 
-def own_records(motions: dict[str, GroundMotion], options: RunOptions) -> dict[str, GroundMotion]:
+def own_records(motions: dict[str, Record], options: RunOptions) -> dict[str, Record]:
     """Return the records of the part that `shard` names: the i-th and every n-th after it."""
     shard = options.get("shard")
     if shard is None:

@@ -77,7 +77,8 @@ class Store:
         kind += [f"{name}\0{_source(f)}".encode() for name, f in plan.functions.items()]
         columns = [_column(plan, i) for i in range(len(plan.columns))]
         motions = [
-            [motion.time.tobytes(), motion.acceleration.tobytes()] for motion in plan.motions
+            [each.tobytes() for each in (motion.time, motion.acceleration, motion.across)]
+            for motion in plan.motions
         ]
         self._keys = [
             _digest(*kind, *columns[i], *motions[j], scale.tobytes())

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias, TypeGuard
 
 import numpy as np
 
@@ -314,6 +315,22 @@ def checked_motion(motion: object, who: str = "") -> GroundMotion:
     """Return a motion, or raise `InputError` with what makes one."""
     remedy = "motions.read_motion(path) or motions.GroundMotion(acceleration, dt) makes one"
     return _arguments.instance(motion, f"{who}motion", GroundMotion, remedy)
+
+
+#: A motion along x, or two at once along x and y.
+Record: TypeAlias = GroundMotion | tuple[GroundMotion, GroundMotion]
+
+
+def is_pair(record: object) -> TypeGuard[tuple[GroundMotion, GroundMotion]]:
+    """Return whether a record is two motions, along x and y."""
+    if not isinstance(record, tuple) or len(record) != 2:
+        return False
+    return all(isinstance(part, GroundMotion) for part in record)
+
+
+def components(record: Record) -> tuple[GroundMotion, ...]:
+    """Return the motion of a record, or its two along x and y."""
+    return (record,) if isinstance(record, GroundMotion) else record
 
 
 def _integral(values: Array, dt: float) -> Array:

@@ -26,6 +26,7 @@ from rbsdem.errors import InputError
 from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
 from rbsdem.model.shape import Section
+from rbsdem.motions.motion import components
 from rbsdem.output import buildings, frames, many, section
 from rbsdem.output.loops import history
 from rbsdem.output.style import style
@@ -388,12 +389,12 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
     about = {name: str(value) for name, value in about.items()}
     given = {"setting": list(about), "value": list(about.values())}
     yield Sheet("Analysis", _damped(structure), table=data_frame(given))
-    motions = found.runs.motions
+    motions = {name: components(record) for name, record in found.runs.motions.items()}
     records = {
         "record": list(motions),
-        "points": [one.acceleration.size for one in motions.values()],
-        "step_s": [one.dt for one in motions.values()],
-        "peak_m/s2": [one.pga for one in motions.values()],
+        "points": [max(each.acceleration.size for each in parts) for parts in motions.values()],
+        "step_s": [parts[0].dt for parts in motions.values()],
+        "peak_m/s2": [max(each.pga for each in parts) for parts in motions.values()],
     }
     if len(found.runs.columns) == 1:
         records["collapse_m/s2"] = np.ravel(found.collapse_intensity)

@@ -10,7 +10,7 @@ module rbs_solve_ensemble_block
    use rbs_solve_ensemble_simd_batch, only: run_in_lanes
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds
-   use rbs_loading_loads, only: loads_type, horizontal
+   use rbs_loading_loads, only: loads_type
    use rbs_solve_time_march, only: initial_state, step_of
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
@@ -101,8 +101,7 @@ contains
 
       if (.not. allocated(column%before)) return
       call take_before(column, before)
-      loads%signal(horizontal)%time = motion%time
-      loads%signal(horizontal)%value = motion%acceleration
+      loads = motion%loads(1.0_wp)
       plan = planned
       call resume_state(state, column%structure, loads, before, plan, checkpoint, error)
    end subroutine check_start
@@ -224,8 +223,7 @@ contains
          error = column%error
          return
       end if
-      loads%signal(horizontal)%time = motion%time
-      loads%signal(horizontal)%value = motion%acceleration
+      loads = motion%loads(1.0_wp)
       call plan_dynamic(column%structure, column%analysis, motion%time, loads, plan, error)
    end subroutine plan_run
 
@@ -253,8 +251,7 @@ contains
       task%recorder => no_rows
       task%collapse_drift = column%analysis%collapse_drift
       task%most_seconds = column%analysis%max_seconds
-      loads%signal(horizontal)%time = motion%time
-      loads%signal(horizontal)%value = scale*motion%acceleration
+      loads = motion%loads(scale)
       call take_before(column, task%before)
       call run_dynamic(column%structure, column%analysis, plan, motion%time, loads, at_rest, task, error, &
                        monitor)

@@ -3,6 +3,7 @@ module rbs_solve_ensemble_ensemble_input
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_case_analysis_record, only: analysis_record
+   use rbs_loading_loads, only: loads_type, horizontal, sideways
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_monitor, only: watch_type
    use rbs_structure_structure, only: structure_type
@@ -24,10 +25,14 @@ module rbs_solve_ensemble_ensemble_input
       type(error_type), allocatable :: error
    end type ensemble_column
 
-   !> A ground motion.
+   !> A ground motion, or two at once along x and y.
    type :: ensemble_motion
       !> Times (m) [s], ascending, and accelerations (m) [m/s2]
       real(wp), allocatable :: time(:), acceleration(:)
+      !> Accelerations along y (m) [m/s2]; not allocated: none
+      real(wp), allocatable :: across(:)
+   contains
+      procedure :: loads
    end type ensemble_motion
 
    !> One run: its column, its motion, and the factor of the accelerations.
@@ -44,5 +49,19 @@ module rbs_solve_ensemble_ensemble_input
       integer :: parts = 1
       real(wp) :: scale = 1.0_wp
    end type lane_task
+
+contains
+
+   !> The motion as loads, its accelerations times a factor.
+   pure type(loads_type) function loads(self, scale)
+      class(ensemble_motion), intent(in) :: self
+      real(wp), intent(in) :: scale
+
+      loads%signal(horizontal)%time = self%time
+      loads%signal(horizontal)%value = scale*self%acceleration
+      if (.not. allocated(self%across)) return
+      loads%signal(sideways)%time = self%time
+      loads%signal(sideways)%value = scale*self%across
+   end function loads
 
 end module rbs_solve_ensemble_ensemble_input
