@@ -296,10 +296,16 @@ def test_what_a_code_does_not_cover_is_said():
 def test_refusals(push):
     plain = rbsdem.FrameMember(30e9, 0.16, 2e-3, yield_moment=2e5, hardening=0.01)
     bare = rbsdem.pushover(rbsdem.Frame.grid([3.0], [5.0], columns=plain, beams=plain), drift=0.01)
+    # In a row beyond, or at the first of several crossings, they were judged in silence.
+    one_point = rbsdem.cyclic(push.frame, displacement=[0.03])
+    cycle = rbsdem.cyclic(push.frame, displacement=[0.03, -0.01, 0.03], corners=True)
     for call, text in [
         (lambda: assess(bare), "have no sections"),
         (lambda: assess(push, "fema_356"), "asce_41"),
         (lambda: assess(push, at=9.0), "beyond the end"),
+        (lambda: assess(one_point, at=0.02), "its given points alone"),
+        (lambda: assess(cycle, at=0.02), "turns back"),
+        (lambda: target(cycle, DesignSpectrum.en_1998(0.2, "C")), "turns back"),
         (lambda: assess(push, knowledge=2.0), "knowledge"),
         (lambda: assess(push, limits={"C-9-9": (0.1, 0.2, 0.3)}), "C-9-9"),
         (lambda: assess(push, limits={"N-1-1": (0.1, 0.2, 0.3)}), "no node with a panel"),

@@ -684,6 +684,17 @@ def of_one_frame(result: Any, who: str) -> None:
         )
 
 
+def pushed_over(result: FrameResult | BuildingResult, name: str) -> None:
+    """Refuse a path that has no row of its start and its events, or that turns back."""
+    call = result.call
+    way = np.diff(np.atleast_1d(call.get("displacement", call.get("force", 0.0))))
+    if not call.get("corners") or ((way > 0.0).any() and (way < 0.0).any()):
+        raise InputError(
+            f"{name}: the path keeps its given points alone, or turns back, so that it passes a "
+            "displacement never or several times; give what rbsdem.pushover returned"
+        )
+
+
 def rows_at(result: FrameResult | BuildingResult, at: Any) -> tuple[float | None, Array]:
     """Return the displacement that is judged, and its row, or all rows.
 
@@ -699,6 +710,7 @@ def rows_at(result: FrameResult | BuildingResult, at: Any) -> tuple[float | None
         return None, every
     if result.dynamic:
         raise InputError("assess: a response in time is judged by its envelope; leave out at")
+    pushed_over(result, "assess: at")
     if not getattr(at, "reached", True):
         raise InputError("the push-over ends before the target; push further")
     wanted = _arguments.number(getattr(at, "signed", at), "assess: at")

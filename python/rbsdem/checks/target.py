@@ -19,7 +19,7 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.checks import asce_41 as codes
-from rbsdem.checks.acceptance import between, rows_at
+from rbsdem.checks.acceptance import between, pushed_over, rows_at
 from rbsdem.checks.en_1998 import target_of_one_mass
 from rbsdem.curves.envelope import SOURCES, Envelope, Idealisation, envelope
 from rbsdem.errors import InputError, warn
@@ -264,6 +264,7 @@ def capacity(push: FrameResult | BuildingResult) -> Capacity:
         push = _arguments.instance(push, "target", FrameResult, "as of rbsdem.pushover")
     if push.dynamic:
         raise InputError("target: the result is a response in time; give a push-over")
+    pushed_over(push, "target")
     if isinstance(push, BuildingResult):
         return _capacity_of_building(push)
     frame: Frame = push.frame
