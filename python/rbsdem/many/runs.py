@@ -88,12 +88,12 @@ def make_intensity(
 ) -> Intensity:
     """Return an intensity measure; its period is that of the column unless one is given."""
     several = any(map(is_pair, records))
+    name = _arguments.choice(name, "intensity", (*NAMES, *OF_PAIRS))
     if name in OF_PAIRS and not several:
         raise InputError(
             f"intensity: {name!r} is of pairs of motions; give [(east_west, north_south), ...], or "
             "take 'sa_t1'"
         )
-    name = _arguments.choice(name, "intensity", (*NAMES, *OF_PAIRS) if several else NAMES)
     pairs: Literal["", OfPairs] = "geometric_mean" if several else ""
     if name in OF_PAIRS:
         pairs, name = "larger" if name == "larger" else pairs, "sa_t1"

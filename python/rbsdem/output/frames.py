@@ -592,10 +592,11 @@ def _draw_hinges(
                 label=name,
             )
     if any(points.values()):
+        wide, high = _figure_size(structure)
         ax.legend(
             loc="upper center",
-            bbox_to_anchor=(0.5, -0.16 / max(_figure_size(structure)[1] / 3, 0.6)),
-            ncols=4,
+            bbox_to_anchor=(0.5, -0.16 / max(high / 3, 0.6)),
+            ncols=round(wide / 1.7),
             handletextpad=0.0,
             columnspacing=1.2,
         )
