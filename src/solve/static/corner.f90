@@ -168,9 +168,26 @@ contains
          call path%springs%leave(i, -path%springs%unload_on_reversal(i))
       end subroutine let_one_unload
 
-      !> Springs that are blocked on their lines for the present rates, and joints on their planes.
+      !> Springs that are blocked on their lines for the present rates, and joints on their planes. Springs
+      !> whose rates are round-off rest: beside a storey without strength nothing else moves.
       subroutine find_stopped()
-         call find_blocked(path%springs, path%rate(:path%moving), blocked, springs_blocked)
+         real(wp) :: energy(path%moving), least
+         integer :: i, count
+
+         call find_blocked(path%springs, path%rate(:path%moving), blocked, count)
+         springs_blocked = 0
+         if (count > 0) then
+            energy = path%structure%initial_stiffness(:path%moving)*path%rate(:path%moving)**2
+            least = no_rate**2*maxval(energy)
+         end if
+         do i = 1, count
+            if (energy(blocked(i)) < least) then
+               path%rate(blocked(i)) = 0.0_wp
+            else
+               springs_blocked = springs_blocked + 1
+               blocked(springs_blocked) = blocked(i)
+            end if
+         end do
          stopped = springs_blocked
          if (path%springs%axial_load_varies) call update_layer_branches(stopped)
       end subroutine find_stopped
