@@ -5,9 +5,11 @@ import sys
 
 import numpy as np
 import pytest
+from test_building import B, C
 from test_grids import CASE
 
 import rbsdem
+from rbsdem import plot
 from rbsdem.codes import DesignSpectrum, assess, check_target, judge, target
 
 ASKED = """\
@@ -150,12 +152,56 @@ def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words):
     assert not (house.parent / "house.csv").exists()
 
 
-def test_a_building_in_plan_has_no_target_yet(tmp_path):
-    frame = rbsdem.examples.house(1, 1, damping=None, pattern="triangular")
-    planes = [(frame, angle, arm) for angle in (0.0, 90.0) for arm in (0.0, 5.0)]
+def test_a_building_is_judged_by_its_case(tmp_path, monkeypatch):
+    drawn = rbsdem.Building.grid(
+        [3.2], [5.0], [5.0], columns=C, beams_x=B, beams_y=B, floor_load=9e3, mass="from_loads",
+        eccentricity=(0.1, 0.1), kinematics="pdelta", direction=30.0, damping=0.05,
+    )  # fmt: skip
+    time = np.arange(0.0, 1.2, 0.02)
+    pulse = 0.2 * np.sin(2 * np.pi * time / 0.4)
+    np.savetxt(tmp_path / "pulse.csv", np.column_stack((time, pulse)), delimiter=",")
+    asked = "&loading drive = 'displacement', values = 0.08 /\n" + ASKED
+    asked += "&records path = 'pulse.csv', units = 'g' /\n"
+    asked += "&limit member = 'x-1:C-1-*', rotations = 0.001, 0.002, 0.003 /\n"
     path = tmp_path / "plan.nml"
-    loading = "&loading drive = 'displacement', values = 0.02 /\n"
-    path.write_text(rbsdem.Building(planes).to_namelist() + loading + ASKED)
-    done = command("check", path)
-    assert done.returncode == 2
-    assert "they are for planar frames" in done.stderr
+    path.write_text(drawn.to_namelist() + asked)
+    case = rbsdem.read_case(path)
+    found = judge(case)
+    push = rbsdem.pushover(drawn, displacement=0.08)
+    point = target(push, DesignSpectrum.en_1998(0.15, "C"), "en_1998")
+    hand = assess(push, "en_1998_3", at=point, limits={"x-1:C-1-*": (0.001, 0.002, 0.003)})
+    assert found.target.displacement == point.displacement
+    european = found.assessments[0]
+    np.testing.assert_array_equal(
+        european.to_pandas().select_dtypes("number"), hand.to_pandas().select_dtypes("number")
+    )
+    # The record acts along the push: its frames drift as under its two parts.
+    shaken = rbsdem.time_history(
+        drawn, tuple(
+            rbsdem.GroundMotion(found.check.factor[0] * part * 9.80665 * pulse, 0.02)
+            for part in np.array([3**0.5, 1.0]) / 2.0
+        ), method="newmark", dt=0.01,
+    )  # fmt: skip
+    drifts = [np.abs(frame.storey_drift).max() for frame in shaken.frames.values()]
+    assert found.check.storey_drift[0, 0] == pytest.approx(max(drifts), rel=1e-9)
+    there = np.interp(point.signed, push.displacement, np.arange(push.displacement.size))
+    amplified = [
+        point.torsion.get(name, 1.0) * np.interp(there, np.arange(push.displacement.size), drift)
+        for name, frame in push.frames.items()
+        for drift in np.abs(frame.storey_drift - frame.storey_drift[0]).T
+    ]
+    assert found.check.estimated_storey_drift == pytest.approx([max(amplified)], rel=1e-9)
+    # One frame of what was found: figures and the report take it.
+    part = european.frame("x-2")
+    ends = {row["member"] for row in part.rows}
+    assert ends >= set(push.frame("x-2").frame.parts.members)
+    plot.assessment(part)
+    monkeypatch.setattr("rbsdem.web.sheets._image", lambda draw: "")
+    more = {"target": point, "check": found.check}
+    text = rbsdem.report(european, tmp_path / "plan.html", **more).read_text()
+    for heading in ("Error of the target", "Building", "y-2 Storeys", "y-2 Members"):
+        assert f"<h2>{heading}</h2>" in text
+    done = command("run", path, "--quiet")
+    assert done.returncode == 0, done.stderr
+    path.write_text(case.to_namelist())
+    assert rbsdem.read_case(path) == case

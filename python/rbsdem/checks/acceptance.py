@@ -398,6 +398,31 @@ class Assessment(Tabular):
             highest[at] = max(highest.get(at, -1), exceeded)
         return highest
 
+    def frame(self, name: str) -> Assessment:
+        """Return what was found of one frame of a building, for the figures of frames.
+
+        Its columns in two planes have the row of this plane alone.
+
+        Parameters
+        ----------
+        name : str
+            Of the frame: "x-1", or as it was given.
+
+        Raises
+        ------
+        InputError
+            If there is no such frame.
+        """
+        if not isinstance(self.result, BuildingResult):
+            raise InputError("assess: it is of a frame, not of a building; take it as it is")
+        start, result = f"{name}:", self.result.frame(name)
+        rows = [
+            row | {"member": row["member"].removeprefix(start)}
+            for row in self.rows
+            if row["member"].startswith(start) and row["face"] != BOTH
+        ]
+        return replace(self, result=result, rows=rows)
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Explanations that a reader needs: of axial failure, and of strength in shear."""
@@ -672,16 +697,6 @@ def limits_given(frame: Frame, code: AcceptanceCode, limits: Any) -> dict[str, t
             f"confirms; give limits={{{without[0]!r}: rotations of {', '.join(levels)}}} [rad]"
         )
     return stated
-
-
-def of_one_frame(result: Any, who: str) -> None:
-    """Refuse the result of a building where that of a frame is asked for."""
-    if isinstance(result, BuildingResult):
-        name = result.building.planes[0].name
-        raise InputError(
-            f"{who}: it is of a building; give that of one of its frames, as of "
-            f"push.frame({name!r})"
-        )
 
 
 def pushed_over(result: FrameResult | BuildingResult, name: str) -> None:

@@ -30,11 +30,11 @@ from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.judgement import asked, checked, judge
-from rbsdem.many.runs import NAMES
+from rbsdem.many.runs import NAMES, OF_PAIRS
 from rbsdem.many.store import store_status
 from rbsdem.methods.ladder import OF_SETTING
 from rbsdem.methods.study import Physics, compare_methods
-from rbsdem.motions.motion import GroundMotion, synthetic
+from rbsdem.motions.motion import GroundMotion, Record, synthetic
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
@@ -50,6 +50,9 @@ from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
 
 _units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
+_pairs = click.option(
+    "--pairs", is_flag=True, help="records two by two, along x and y of a building"
+)
 _shard = click.option("--shard", metavar="I/N", help="do part I of N, from 1 to N")
 _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one per processor")
 _tests = click.option("--tests", type=FOLDER, metavar="DIR", help="show the nearest measured tests")
@@ -232,7 +235,7 @@ def _tell_files(paths: Sequence[Path]) -> None:
 # ---- records ------------------------------------------------------------------------------------
 
 
-def _records(words: Sequence[str], units: str | None) -> list[GroundMotion]:
+def _records(words: Sequence[str], units: str | None, pairs: bool) -> list[Record]:
     """Return the records of folders and files, or synthetic ones; report all that is wrong."""
     records: list[GroundMotion] = []
     faults: list[str] = []
@@ -244,7 +247,14 @@ def _records(words: Sequence[str], units: str | None) -> list[GroundMotion]:
         tell(str(warning.message))
     if faults:
         raise InputError("\n".join(faults))
-    return records
+    if not pairs:
+        return list(records)
+    if len(records) % 2:
+        raise InputError(
+            f"--pairs: {len(records)} records are no pairs; give two of each earthquake one after "
+            "the other, along x and along y"
+        )
+    return list(zip(records[::2], records[1::2], strict=True))
 
 
 def _records_of(word: str, units: str | None) -> Sequence[GroundMotion]:
@@ -285,6 +295,7 @@ _status = click.option(
 @click.argument("records", nargs=-1, type=FILE, metavar="[RECORD]...")
 @click.option("--scales", default="1", metavar="A,B,...", help="factors of the records; default 1")
 @_units
+@_pairs
 @click.option("--out", type=FOLDER, required=True, metavar="DIR", help="folder for the files")
 @_jobs
 @_shard
@@ -295,6 +306,7 @@ def ensemble(
     records: tuple[Path, ...],
     scales: str,
     units: str | None,
+    pairs: bool,
     out: Path,
     jobs: int | None,
     shard: str | None,
@@ -321,7 +333,7 @@ def ensemble(
     (rows,) = claim_folder(out, ["runs.csv"])
     runs = run_ensemble(
         {model.title or case.stem: model.column},
-        _records(list(map(str, records)), units) if records else [_own_motion(case, model)],
+        _records(list(map(str, records)), units, pairs) if records else [_own_motion(case, model)],
         scales=_numbers(scales, "--scales", "numbers separated by commas, as 0.5,1,2"),
         collapse_drift=model.settings.get("collapse_drift"),
         initial=model.settings.get("initial"),
@@ -356,8 +368,8 @@ def _own_motion(path: Path, case: Case) -> Any:
     others = [name for name in case.loads if name != "ground_acceleration"]
     if others:
         raise InputError(
-            f"{path}: an ensemble takes horizontal ground motions only, no {others[0]}; remove it "
-            "from the case, or run the case alone: rbsdem run"
+            f"{path}: an ensemble takes the ground motion along x of a case, no {others[0]}; give "
+            "records (--pairs: along x and y), or run the case alone: rbsdem run"
         )
     return case.time, case.ground_acceleration
 
@@ -377,7 +389,10 @@ def _part(text: str) -> tuple[int, int]:
 @CASE
 @click.argument("records", nargs=-1, required=True, type=FILE, metavar="RECORDS...")
 @_units
-@click.option("--intensity", default="sa_t1", help=f"{', '.join(NAMES)}; default sa_t1")
+@_pairs
+@click.option(
+    "--intensity", default="sa_t1", help=f"{', '.join((*NAMES, *OF_PAIRS))}; default sa_t1"
+)
 @click.option("--levels", default="search", metavar="A,B", help="m/s2; default: found by search")
 @click.option(
     "--limit", multiple=True, metavar="NAME[=DRIFT]", help="limit state: repair=0.01, spalling"
@@ -398,6 +413,7 @@ def ida(
     case: Path,
     records: tuple[Path, ...],
     units: str | None,
+    pairs: bool,
     intensity: Any,
     levels: str,
     limit: tuple[str, ...],
@@ -413,8 +429,9 @@ def ida(
     r"""Run an incremental dynamic analysis: each record at growing intensity until collapse.
 
     Fragility curves of the limit states are fitted to the runs. RECORDS is a folder of records
-    (AT2, csv), files of records, or synthetic[:N]. The loading of the case is not used.
-    --limit and --beta may be repeated.
+    (AT2, csv), files of records, or synthetic[:N]. The loading of the case is not used. With
+    --pairs each two of them, a folder's by name, shake a building along x and y at once; their
+    intensity is the geometric mean, or --intensity larger. --limit and --beta may be repeated.
 
     \b
     Files (--out): store/ (finished runs, from which a second start goes on), ida.csv (one row per
@@ -434,7 +451,7 @@ def ida(
     spreads = _spreads(beta, limits)
     site = None if hazard is None else _read_hazard(hazard)
     example = "intensities in m/s2 separated by commas, or search"
-    motions = _records(list(map(str, records)), units)
+    motions = _records(list(map(str, records)), units, pairs)
     part = None if shard is None else _part(shard)
     store, files = None, []
     if out is not None:

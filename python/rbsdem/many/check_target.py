@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,12 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
-from rbsdem.checks.acceptance import of_one_frame
+from rbsdem.checks.acceptance import between, rows_at
 from rbsdem.checks.target import Target
 from rbsdem.many.ensemble import ensemble
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.run.solver import Solver
+from rbsdem.section.plan import Building, cosine_sine
 
 #: Damping of a frame without any, as the spectra have it.
 _DAMPING = 0.05
@@ -107,11 +109,11 @@ def check_target(
 
     Parameters
     ----------
-    found : Target
+    target : Target
         The estimate, of a push-over.
     records : sequence of GroundMotion
-        The records. Each is scaled so that the mean logarithm of its spectrum over that of the
-        demand is zero.
+        The records; those of a building act along its direction. Each is scaled so that the mean
+        logarithm of its spectrum over that of the demand is zero.
     periods : tuple of float, optional
         Range of periods for it, in parts of the elastic one of the first mode.
     jobs, progress
@@ -123,13 +125,14 @@ def check_target(
     -------
     TargetCheck
         Drifts under the records over those of the estimate. A frame without damping gets 5 % in
-        all modes, as the spectrum has.
+        all modes, as the spectrum has. Drifts of storeys of a building are the largest of any
+        frame; those of the estimate are multiplied by `Target.torsion`.
     """
-    of_one_frame(target.pushed, "check_target")
-    frame = target.pushed.frame
-    estimate = target.drift, target.storey_drift
+    frame = target.pushed.structure
+    of_building = isinstance(frame, Building)
+    estimate = target.drift, _of_frames(target) if of_building else target.storey_drift
     if not frame.damped:
-        frame = replace(frame, damping=_DAMPING)
+        frame = (frame.changed if of_building else partial(replace, frame))(damping=_DAMPING)
     low, high = (_arguments.number(value, "check_target: periods", above=0.0) for value in periods)
     t = np.geomspace(low * target.curve.period, high * target.curve.period, 40)
     wanted = np.array([target.spectrum.sa(motion) for motion in t])
@@ -142,8 +145,17 @@ def check_target(
     storeys = range(1, estimate[1].size + 1)
     names = [f"peak_storey_drift_{i}" for i in storeys]
     settings: Any = {"method": "newmark", "dt": 0.01} | solver
+    shaken: Any = motions
+    if of_building and frame.direction % 180.0:
+        along = cosine_sine(frame.direction)
+        named = [one.name or str(i) for i, one in enumerate(motions)]
+        pairs = [
+            tuple(replace(one, acceleration=part * one.acceleration) for part in along)
+            for one in motions
+        ]
+        shaken = dict(zip(named, pairs, strict=True))
     runs = ensemble(
-        frame, motions, scales=np.array(factors)[:, None], measures=["peak_drift", *names],
+        frame, shaken, scales=np.array(factors)[:, None], measures=["peak_drift", *names],
         jobs=jobs, progress=progress, **settings,
     )  # fmt: skip
     measured = runs.measures
@@ -155,3 +167,15 @@ def check_target(
         np.column_stack([measured[name] for name in names]),
         *estimate,
     )
+
+
+def _of_frames(target: Target) -> Array:
+    """Return the largest drift of each storey in any frame of a building, with its torsion."""
+    push = target.pushed
+    rows = rows_at(push, target)[1]
+    largest = np.zeros(len(push.building.storey_heights))
+    for name, frame in push.frames.items():
+        drift = between(rows, np.abs(frame.storey_drift - frame.storey_drift[0]))[0]
+        storeys = largest[: drift.size]
+        np.maximum(storeys, target.torsion.get(name, 1.0) * drift, out=storeys)
+    return largest

@@ -17,11 +17,11 @@ from rbsdem.errors import InputError
 from rbsdem.many.check_target import TargetCheck, check_target
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.read import read_motion, read_motions
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.case import Case
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.response import pushover
 from rbsdem.section.frame import Frame
-from rbsdem.section.plan import Building
 
 #: Keys of a spectrum, by its code.
 _SPECTRA: dict[str, tuple[str, ...]] = {
@@ -37,7 +37,7 @@ class Judgement:
 
     Attributes
     ----------
-    result : FrameResult
+    result : FrameResult or BuildingResult
         The push-over to the largest displacement of the loading, or the response in time.
     target : Target or None
         Its target displacement, if the case has a `&target`.
@@ -49,7 +49,7 @@ class Judgement:
         The level that each of them is judged at.
     """
 
-    result: FrameResult
+    result: FrameResult | BuildingResult
     target: Target | None
     check: TargetCheck | None
     assessments: list[Assessment]
@@ -82,11 +82,6 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     faults: list[str] = []
     if asked(case) and not isinstance(case.column, Frame):
         faults.append("target, assess: they are for frames; remove them from the case of a column")
-    if asked(case) and isinstance(case.column, Building):
-        faults.append(
-            "target, assess: in a case they are for planar frames; remove them from a building, "
-            "and give its push-over to rbsdem.codes.target and assess"
-        )
     if case.target and (case.method != "static" or case.displacement is None):
         faults.append(
             "target: it is that of a push-over; give drive = 'displacement' without times"
@@ -103,7 +98,7 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
                 f"assess: level = {levels[-1]!r} is none of {group['code']}; it is one of "
                 f"{', '.join(known)}"
             )
-        if isinstance(case.column, Frame) and not isinstance(case.column, Building):
+        if isinstance(case.column, Frame):
             with collected(faults):
                 limits_given(case.column, group["code"], _limits_of(case, group["code"]))
     raise_faults(faults)
@@ -128,7 +123,7 @@ def _spectrum(group: Mapping[str, Any]) -> DesignSpectrum:
     return (DesignSpectrum.en_1998 if code == "en_1998" else DesignSpectrum.asce_41)(**values)
 
 
-def response(case: Case, **settings: Any) -> FrameResult:
+def response(case: Case, **settings: Any) -> FrameResult | BuildingResult:
     """Return the push-over to the largest displacement of a static case, or its response in time.
 
     Parameters
@@ -144,13 +139,13 @@ def response(case: Case, **settings: Any) -> FrameResult:
         result = pushover(case.column, displacement=float(path[np.abs(path).argmax()]))
     else:
         result = case.run(**settings)
-    return cast(FrameResult, result)
+    return cast(FrameResult | BuildingResult, result)
 
 
 def judge(
     case: Case,
     *,
-    result: FrameResult | None = None,
+    result: FrameResult | BuildingResult | None = None,
     jobs: int | None = None,
     progress: bool = False,
 ) -> Judgement:
@@ -163,7 +158,7 @@ def judge(
     ----------
     case : Case
         As of `rbsdem.read_case`.
-    result : FrameResult, optional
+    result : FrameResult or BuildingResult, optional
         Its response, if it is known.
     jobs, progress
         As for `rbsdem.ensemble`, for the records.

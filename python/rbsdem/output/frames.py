@@ -10,7 +10,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
-from rbsdem.checks.acceptance import Assessment, of_one_frame
+from rbsdem.checks.acceptance import Assessment
 from rbsdem.checks.target import Target
 from rbsdem.errors import InputError
 from rbsdem.model.frame import MemberGeometry
@@ -24,6 +24,7 @@ from rbsdem.output.style import (
 )
 from rbsdem.output.units import factor, labelled, paper
 from rbsdem.run.analysis import FrameModes
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.frame_result import FAILS, FrameResult
 from rbsdem.run.rows import Result
 from rbsdem.section.frame import Frame
@@ -232,12 +233,12 @@ def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
     return drawn
 
 
-def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axes:
+def pushover(result: FrameResult | BuildingResult, *, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw base shear over the displacement of the roof, with the limit states of the hinges.
 
     Parameters
     ----------
-    result : FrameResult
+    result : FrameResult or BuildingResult
         The push-over, as `rbsdem.pushover` returns it; other results are drawn as loops.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
@@ -249,7 +250,8 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
     matplotlib.axes.Axes
         The axes. The legend names the first hinge of each limit state, and how many follow it.
     """
-    _arguments.instance(result, "plot.pushover", FrameResult)
+    if not isinstance(result, BuildingResult):
+        result = _arguments.instance(result, "plot.pushover", FrameResult)
     with axes_or_new(ax, (4.6, 3.2)) as drawn:
         way = factor("m") * result.displacement, factor("N") * result.base_shear
         drawn.plot(*way, **line_of(MODEL_LINE, line))
@@ -280,7 +282,7 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
             drawn.axvline(0.0, **ZERO_LINE)
         drawn.set(xlabel=labelled("Roof displacement", "m"), ylabel=labelled("Base shear", "N"))
         drawn.tick_params(right=True)
-        drift_axis(drawn, result.frame.height)
+        drift_axis(drawn, result.structure.height)
     return drawn
 
 
@@ -868,7 +870,12 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
         The axes, in m. Members that exceed their shear strength have the colour of the last level.
     """
     _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
-    of_one_frame(found.result, "plot.assessment")
+    if isinstance(found.result, BuildingResult):
+        name = found.result.building.planes[0].name
+        raise InputError(
+            "plot.assessment: it is of a building; give that of one of its frames, as "
+            f"assessment.frame({name!r})"
+        )
     structure, states = found.result.frame, found.states()
     names = ["no level exceeded", *(f"{name} exceeded" for name in found.levels)]
     names[-1] += ", or shear strength" if found.counts()["shear"] else ""

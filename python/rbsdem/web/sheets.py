@@ -18,7 +18,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._files import atomic_write, data_frame, figure_bytes
 from rbsdem._types import DataFrame
-from rbsdem.checks.acceptance import Assessment, between, of_one_frame, rows_at
+from rbsdem.checks.acceptance import Assessment, between, rows_at
 from rbsdem.checks.code_values import code_values
 from rbsdem.checks.infills import CHECK_NOTE, infills
 from rbsdem.checks.target import Target
@@ -39,6 +39,7 @@ from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram
 from rbsdem.section.frame import SCOPE_NOTE, Frame, Structure
 from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.plan import Building
 from rbsdem.section.strength import Code, interaction
 from rbsdem.web.pages import plain
 
@@ -216,13 +217,7 @@ def _of_result(result: ColumnResult) -> Iterator[Sheet]:
 
 @sheets_of.register
 def _of_building(result: BuildingResult) -> Iterator[Sheet]:
-    building = result.building
-    given = inputs(building._groups())
-    about = f"{building!r}: mass {building.parts.mass / 1e3:.4g} t"
-    if building.parts.mass > 0:
-        about += f"; elastic periods {', '.join(f'{t:.3g}' for t in modes(building, 3).period)} s"
-    drawn = [partial(_titled, *one) for one in list(_drawings(building).items())[:_MOST_SECTIONS]]
-    yield Sheet("Inputs", f"{about}.", (partial(buildings.plan, building), *drawn), given, True)
+    yield _of_plan(result.building)
     largest = int(np.abs(result.displacement).argmax())
     shapes = (
         partial(buildings.plan, result, row=largest),
@@ -235,6 +230,16 @@ def _of_building(result: BuildingResult) -> Iterator[Sheet]:
         for sheet in list(_of_frame(frame))[1:-1]:
             yield replace(sheet, heading=f"{name} {sheet.heading}")
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
+
+
+def _of_plan(building: Building) -> Sheet:
+    """Return the sheet of the inputs of a building."""
+    about = f"{building!r}: mass {building.parts.mass / 1e3:.4g} t"
+    if building.parts.mass > 0:
+        about += f"; elastic periods {', '.join(f'{t:.3g}' for t in modes(building, 3).period)} s"
+    drawn = [partial(_titled, *one) for one in list(_drawings(building).items())[:_MOST_SECTIONS]]
+    shown = (partial(buildings.plan, building), *drawn)
+    return Sheet("Inputs", f"{about}.", shown, inputs(building._groups()), True)
 
 
 @sheets_of.register
@@ -283,8 +288,12 @@ def of_assessment(
 ) -> Iterator[Sheet]:
     """Yield the sheets of an assessment, with the target that it was made at and its check."""
     result = found.result
-    of_one_frame(result, "report")
-    yield _of_structure(result.frame)
+    parts = {"": found}
+    if isinstance(result, BuildingResult):
+        yield _of_plan(result.building)
+        parts = {f"{name} ": found.frame(name) for name in result.frames}
+    else:
+        yield _of_structure(result.frame)
     curves: list[Callable[[], Any]] = [partial(frames.pushover, result)]
     text = repr(found)
     if target is not None:
@@ -304,19 +313,28 @@ def of_assessment(
     if found.displacement is not None:
         away = np.abs(result.displacement - found.displacement)
         row = int(away.argmin())
-    if result.frame.storey_heights:
-        yield Sheet("Storeys", _STOREYS, table=_storeys(found))
-    drawn: list[Callable[[], Any]] = [partial(frames.frame, result, row=row)]
-    if result.frame.storey_heights and found.displacement is None:
-        drawn.append(partial(frames.storey_drift, result))
-    drawn.append(partial(frames.assessment, found))
+    if isinstance(result, BuildingResult):
+        shapes = (partial(draw, result, row=row) for draw in (buildings.plan, buildings.building))
+        yield Sheet("Building", _judged(found), tuple(shapes), found.worst(10))
+    for name, part in parts.items():
+        own = part.result
+        if own.frame.storey_heights:
+            yield Sheet(f"{name}Storeys", _STOREYS, table=_storeys(part))
+        drawn: list[Callable[[], Any]] = [partial(frames.frame, own, row=row)]
+        if own.frame.storey_heights and found.displacement is None:
+            drawn.append(partial(frames.storey_drift, own))
+        drawn.append(partial(frames.assessment, part))
+        yield Sheet(f"{name}Members", _judged(part), tuple(drawn), part.worst(10))
+    yield Sheet("All members", table=found.to_pandas(), beside=True)
+    yield Sheet("Assumed", f"{found.assumed} {result.scope_note} {_LEFT_OUT}")
+
+
+def _judged(found: Assessment) -> str:
+    """Return how many ends exceed each level, in words before the largest ratios."""
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
     told = "What exceeds its strength in shear has the colour of the last level."
     text = f"{found.source}: ends and joints that exceed each level: {counts}."
-    text = " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
-    yield Sheet("Members", text, tuple(drawn), found.worst(10))
-    yield Sheet("All members", table=found.to_pandas(), beside=True)
-    yield Sheet("Assumed", f"{found.assumed} {result.scope_note} {_LEFT_OUT}")
+    return " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
 
 
 def _storeys(found: Assessment) -> DataFrame:
