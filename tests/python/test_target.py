@@ -401,17 +401,45 @@ def test_more_demand_never_moves_a_frame_less(seed):
         found = [target(push, DesignSpectrum.en_1998(float(ag), soil), method) for ag in levels]
         assert (np.diff([each.displacement for each in found]) >= 0).all()
         for each, ag in zip(found, levels, strict=True):
+            if each.displacement > each.curve.first_yield:
+                continue
+            assert each.ductility <= 1.0
+            if method == "asce_41":
+                assert each.factors["C_1"] == each.factors["C_2"] == 1.0
             if each.displacement > each.curve.elastic:
                 continue
             # On the first line of the curve the answer is that of the elastic frame.
-            assert each.ductility <= 1.0
             first = 2 * np.pi * np.sqrt(each.curve.modal_mass / each.curve.slope)
             if method == "asce_41":
-                assert each.factors["C_1"] == each.factors["C_2"] == 1.0
                 first = each.curve.period * np.sqrt(each.curve.stiffness / each.curve.slope)
             factor = damping_factor(0.05) if method == "capacity_spectrum" else 1.0
             elastic = each.curve.gamma * DesignSpectrum.en_1998(float(ag), soil).sd(first) / factor
             assert each.displacement == pytest.approx(elastic, rel=1e-9)
+
+
+def test_cracks_are_no_yield():
+    # Cracked from 2 mm on with a third of the stiffness, yielding at 20 mm; one mass of 1e5 kg.
+    u, v = [0, 0.002, 0.020, 0.060], [0, 60e3, 240e3, 250e3]
+    curve = Capacity(u, v, 1.0, 1e5, 1e5, first_yield=0.020)
+
+    def asked(stiffness):
+        """Return the constant acceleration that takes the line to 10 mm."""
+        return 0.010 * stiffness / 1e5
+
+    # At 10 mm the force is 140 kN: 0.6 of it at 4.4 mm, or equal areas of 60 + 800 J.
+    lines = {"asce_41": 84e3 / 0.0044, "en_1998": 140e3 / (2 * (0.010 - 860 / 140e3))}
+    for method, stiffness in lines.items():
+        found = target(curve, constant(asked(stiffness)), method)
+        assert found.displacement == pytest.approx(0.010, rel=1e-8)
+        assert found.ductility == pytest.approx(0.5, rel=1e-8)
+        assert found.lines.stiffness == pytest.approx(stiffness, rel=1e-8)
+        assert found.lines.yield_force == pytest.approx(240e3, rel=1e-12)
+    # A frame of cracking sections has its first yield from its events.
+    push = rbsdem.pushover(rbsdem.examples.portal(), drift=0.01)
+    yields = next(event for event in push.events if event.name == "yield")
+    found = target(push, DesignSpectrum.en_1998(0.1, "C"))
+    assert found.curve.first_yield == pytest.approx(yields.displacement - push.displacement[0])
+    assert found.ductility == pytest.approx(found.displacement / found.curve.first_yield)
 
 
 def test_a_fall_at_one_displacement_has_no_slope():

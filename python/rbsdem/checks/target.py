@@ -59,8 +59,8 @@ class Target(Tabular):
     period : float
         Effective period of the method [s]: T_e, T* or T_eff.
     ductility : float
-        mu_strength of ASCE 41, else displacement over that at yield; on the first line of the curve
-        displacement over that at its end, below 1.
+        mu_strength of ASCE 41, else displacement over that at yield of the lines; below the first
+        yield of a member displacement over that there, below 1.
     factors : dict of str to float
         The coefficients of the method by name.
     warnings : tuple of str
@@ -282,7 +282,17 @@ def capacity(push: FrameResult | BuildingResult) -> Capacity:
     slope = _pdelta_slope(frame, first.x[:, 0] / phi, gamma)
     masses, period = (gamma, modal_mass, frame.parts.mass), float(first.period[0])
     stiffness = _elastic_slope(frame, first.x[:, 0])
-    return Capacity(u, v, *masses, max(storeys, 1), period, stiffness, pdelta_slope=slope)
+    curve = *masses, max(storeys, 1), period, stiffness, slope
+    return Capacity(u, v, *curve, _first_yield(push, side))
+
+
+def _first_yield(push: FrameResult | BuildingResult, side: float) -> float:
+    """Return the displacement of the first event but cracks, NaN where nothing is watched [m]."""
+    events = push.events
+    beyond = [event.displacement for event in events if event.name != "cracking"]
+    last = push.displacement[-1]
+    at = beyond[0] if beyond else last if len(events) else math.nan
+    return side * float(at - push.displacement[0])
 
 
 def _moved_along(building: Building) -> tuple[BuildingModes, Array, Array]:
@@ -314,7 +324,8 @@ def _capacity_of_building(push: BuildingResult) -> Capacity:
     slope = _pdelta_slope(building, found.x[:, first] / phi, gamma)
     total = float(np.sum(building.plan_mass) + sum(one.mass for one in building.nodes if one.floor))
     storeys = len(building.storey_heights)
-    return Capacity(u, v, gamma, modal_mass, total, storeys, pdelta_slope=slope)
+    more = {"pdelta_slope": slope, "first_yield": _first_yield(push, side)}
+    return Capacity(u, v, gamma, modal_mass, total, storeys, **more)
 
 
 def _elastic_slope(frame: Frame, shape: Array) -> float:
@@ -393,6 +404,9 @@ class Capacity(Tabular):
         the slope is that of the first line of the curve, the period that of m* on it.
     pdelta_slope : float
         Slope that P-Delta alone takes from the curve [N/m].
+    first_yield : float
+        Displacement at which a member yields or fails first, not before the end of the first line
+        of the curve, which it is by default [m]. Cracks bend a curve before it.
     """
 
     _columns = ("displacement m", "force N")
@@ -406,6 +420,7 @@ class Capacity(Tabular):
     period: float = math.nan
     stiffness: float = math.nan
     pdelta_slope: float = 0.0
+    first_yield: float = math.nan
 
     def __post_init__(self) -> None:
         curve = envelope((self.displacement, self.force))
@@ -419,6 +434,8 @@ class Capacity(Tabular):
             _arguments.put(self, **{name: value})
         if math.isnan(self.stiffness):
             _arguments.put(self, stiffness=self.slope)
+        at = _arguments.number(np.nan_to_num(self.first_yield), "Capacity: first_yield")
+        _arguments.put(self, first_yield=min(max(at, self.elastic), self.largest))
         if math.isnan(self.period):
             slow = 2.0 * math.pi * math.sqrt(self.modal_mass / self.stiffness)
             _arguments.put(self, period=slow)
@@ -448,7 +465,7 @@ class Capacity(Tabular):
         masses, shape : array_like, shape (storeys,)
             Masses of the floors [kg] and their shares of the shape in any scale, from below.
         **more
-            `period`, `stiffness`, `pdelta_slope`.
+            `period`, `stiffness`, `pdelta_slope`, `first_yield`.
         """
         m = _arguments.finite_vector(masses, "masses")
         phi = _arguments.finite_vector(shape, "shape")
@@ -466,15 +483,33 @@ class Capacity(Tabular):
     def idealise(self, method: str, end: float) -> Idealisation:
         """Return the two straight lines of the curve up to an end [m].
 
-        Up to the end of its first line the curve is that line, and yields at the end of it: any
-        yield point on it would have equal areas.
+        Up to the first yield of a member they are one line that ends at the force there: that of
+        the curve up to its end, where any yield point would have equal areas, and behind it, where
+        members have cracked, with the stiffness of the method for a yield force as at the end.
         """
         curve = Envelope(1, self.displacement, self.force)
-        if end > self.elastic * (1.0 + 1e-12):
+        if end > self.first_yield * (1.0 + 1e-12):
             return curve.idealise(method, end=min(end, self.largest))  # type: ignore[arg-type]
-        first, whole = (self.elastic, self.slope * self.elastic), curve.idealise("park")
-        left = whole.ultimate_displacement, whole.lost
+        stiffness = self.slope
+        if end > self.elastic * (1.0 + 1e-12):
+            if method == "asce_41":
+                force = 0.6 * self.force_at(end)
+                i = int(np.flatnonzero(self.force >= force)[0])
+                stiffness = force / float(
+                    np.interp(force, self.force[i - 1 : i + 1], self.displacement[i - 1 : i + 1])
+                )
+            else:
+                stiffness = curve.idealise(method, end=end).stiffness  # type: ignore[arg-type]
+        upto = slice(int(np.searchsorted(self.displacement, self.first_yield)) + 1)  # before a fall
+        at = np.interp(self.first_yield, self.displacement[upto], self.force[upto])
+        strength, whole = float(at), curve.idealise("park")
+        first, left = (strength / stiffness, strength), (whole.ultimate_displacement, whole.lost)
         return Idealisation(method, SOURCES[method], *first, *first, *left)
+
+    def ductility(self, displacement: float, lines: Idealisation, end: float) -> float:
+        """Return a displacement over that at yield, with lines up to an end [m]."""
+        elastic = end <= self.first_yield * (1.0 + 1e-12)
+        return displacement / (self.first_yield if elastic else lines.yield_displacement)
 
     @cached_property
     def slope(self) -> float:
@@ -546,7 +581,7 @@ def asce_41(
 
     def demand(end: float) -> tuple[float, Idealisation, float, float]:
         lines = curve.idealise("asce_41", end)
-        elastic = end <= curve.elastic
+        elastic = end <= curve.first_yield * (1.0 + 1e-12)
         period = curve.period * math.sqrt(curve.stiffness / lines.stiffness)
         sa = spectrum.sa(period)
         usual = codes.mass_factor(curve.storeys, period)
@@ -559,7 +594,7 @@ def asce_41(
         coefficients["C_2"] = codes.pinching_factor(yields, period)
         reached = first * coefficients["C_1"] * coefficients["C_2"] * spectrum.sd(period)
         if elastic:
-            strength = reached / curve.elastic
+            strength = reached / curve.first_yield
         return reached, lines, period, strength
 
     target, end = _meeting(curve, lambda u: demand(u)[0], curve.peak)
@@ -672,7 +707,8 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         period = 2.0 * math.pi * math.sqrt(curve.modal_mass * at / force)
         sa, elastic = spectrum.sa(period), spectrum.sd(period)
         strength = sa * curve.modal_mass / force
-        reached = target_of_one_mass(elastic, strength, period, spectrum.corner)
+        yields = strength if end > curve.first_yield * (1.0 + 1e-12) else 1.0
+        reached = target_of_one_mass(elastic, yields, period, spectrum.corner)
         values.update({"T*": period, "q_u": strength, "d_et*": elastic, "d_t*": reached})
         return curve.gamma * reached
 
@@ -685,7 +721,7 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
     factors = {"Gamma": curve.gamma, "m*": curve.modal_mass, **values, "T_C": spectrum.corner}
     named = "en_1998", "EN 1998-1:2004, annex B", curve, spectrum
     warnings = ("The lines are drawn up to the target displacement.",) if iterate else ()
-    ductility = target / lines.yield_displacement
+    ductility = curve.ductility(target, lines, end)
     return Target(*named, target, lines, values["T*"], ductility, factors, warnings)
 
 
@@ -724,7 +760,7 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
     def demand(end: float) -> float:
         lines = curve.idealise("asce_41", end)
         slow = 2.0 * math.pi * math.sqrt(curve.modal_mass / lines.stiffness)
-        longer, more = equivalent(end / lines.yield_displacement)
+        longer, more = equivalent(curve.ductility(end, lines, end))
         period, damping = slow * longer, 0.05 + 0.01 * more
         factor = damping_factor(damping)
         values.update({"T_0": slow, "T_eff": period, "beta_eff": damping, "B": factor})
@@ -740,5 +776,5 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
         warnings.append(f"T_0 = {values['T_0']:.3g} s is outside the fit of FEMA 440, 0.2 to 2 s.")
     named = "capacity_spectrum", "FEMA 440, chapter 6", curve, spectrum
     factors = {"Gamma": curve.gamma, **values, "alpha": lines.post_yield_ratio}
-    ductility = target / lines.yield_displacement
+    ductility = curve.ductility(target, lines, end)
     return Target(*named, target, lines, values["T_eff"], ductility, factors, tuple(warnings))
