@@ -199,6 +199,7 @@ contains
       end if
       if (allocated(self%drawing)) then
          do i = 1, size(self%drawing)
+            if (i > 1) call self%drawing(i)%take_materials(self%drawing(i - 1))
             call self%drawing(i)%validate(allocated(self%frame), self%is_drawn(), messages)
          end do
          if (size(self%drawing) > 1 .and. .not. allocated(self%frame)) then

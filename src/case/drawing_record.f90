@@ -88,11 +88,11 @@ module rbs_case_drawing_record
       type(parameter_record), allocatable :: parameters(:)
       !> Of a wall: vertical bars of the web, and horizontal ones
       type(curtain_record), allocatable :: curtains(:)
-      !> Whether the group itself was given, and how many groups of hoops were
-      logical :: stated = .false.
+      !> Whether the group itself and its concrete were given, and how many groups of hoops were
+      logical :: stated = .false., has_concrete = .false.
       integer :: hoops = 0
    contains
-      procedure :: open_group, count_of, visit => visit_drawing, visit_group, validate
+      procedure :: open_group, count_of, visit => visit_drawing, visit_group, take_materials, validate
    end type drawing_record
 
 contains
@@ -110,6 +110,8 @@ contains
       select case (group)
       case ('drawing')
          self%stated = .true.
+      case ('concrete')
+         self%has_concrete = .true.
       case ('steel')
          call append_steel(self%section)
       case ('row')
@@ -267,6 +269,15 @@ contains
       call v%word('name', self%name, 'name of a parameter of the model that is not that of the version')
       call v%key('value', self%value, '', any_number, 'its value')
    end subroutine visit_parameter
+
+   !> Take concrete and steels of the drawing before it where this one has none.
+   subroutine take_materials(self, before)
+      class(drawing_record), intent(inout) :: self
+      type(drawing_record), intent(in) :: before
+
+      if (.not. self%has_concrete) self%section%concrete = before%section%concrete
+      if (size(self%section%steels) == 0) self%section%steels = before%section%steels
+   end subroutine take_materials
 
    !> Add a message for every value that is refused.
    subroutine validate(self, of_frame, drawn, messages)

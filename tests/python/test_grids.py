@@ -40,15 +40,11 @@ CASE = """\
 &drawing name = 'inner', version = 'VERSION' /
 &section shape = 'rectangle', width = 0.45, depth = 0.45, cover = 0.03 /
 &concrete fc = 35e6 /
-&steel id = 1, fy = 450e6, fu = 600e6 /
-&steel id = 2, fy = 400e6 /
 &layout number = 8, diameter = 0.018, steel = 1 /
 &ties diameter = 0.008, spacing = 0.15, steel = 2 /
 &drawing name = 'beam', version = 'VERSION' /
 &section shape = 'rectangle', width = 0.3, depth = 0.5, cover = 0.03 /
 &concrete fc = 25e6 /
-&steel id = 1, fy = 450e6, fu = 600e6 /
-&steel id = 2, fy = 400e6 /
 &row face = 'top', number = 4, diameter = 0.018 /
 &row face = 'bottom', number = 3, diameter = 0.016 /
 &ties diameter = 0.008, spacing = 0.15, steel = 2 /

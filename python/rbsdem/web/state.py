@@ -479,8 +479,11 @@ def drawn_of(case: Case, drawn_here: bool) -> tuple[Case, Drawn | None]:
 def sections_of(case: Any) -> dict[str, Section | None]:
     """Return the sections of a case by the names of their drawings; None for a wrong one."""
     found: dict[str, Section | None] = {}
+    parts: dict[str, list[dict[str, Any]]] = {}
     for name, block in drawings(case):
-        parts: dict[str, list[dict[str, Any]]] = {}
+        # Materials are those of the drawing before it where it has none.
+        own = {case[i][0] for i in block}
+        parts = {n: parts[n] for n in ("concrete", "steel") if n in parts and n not in own}
         for i in block:
             values = {key: value for key, value in case[i][1].items() if value is not None}
             parts.setdefault(case[i][0], []).append(values)
