@@ -123,17 +123,16 @@ def on_springs(program: str, command: str, path: str, *options: str) -> int:
         return code
     try:
         if not asked(case):
-            _tell_files(write_record(case.run(), page))
+            _tell_files(write_record(case.run(), page, {}))
             return code
         judged = judge(case)
         if "--quiet" not in words and "-q" not in words:
             print(judged)
         if page and judged.assessments:
             more: dict[str, Any] = {"target": judged.target, "check": judged.check}
-            written = write_record(judged.assessments[0], page, title=case.title, **more)
-            _tell_files(written)
+            _tell_files(write_record(judged.assessments[0], page, {"title": case.title}, **more))
         elif page:
-            _tell_files(write_record(judged.result, page, title=case.title))
+            _tell_files(write_record(judged.result, page, {"title": case.title}))
     except RbsdemError as error:
         sys.stderr.writelines(f"rbsdem: {line}\n" for line in str(error).splitlines())
         return 2 if isinstance(error, InputError) else 1
@@ -672,9 +671,9 @@ def report(
     model, file = read_case(case), output or case.with_suffix(".html")
     refuse_other_page(file)
     if isinstance(model.column, Frame):
-        title = title or model.title
         units: Any = tuple(paper.split(","))
-        _tell_files(write_record(model.run(), file, title=title, units=units, **head))
+        head["title"] = title or model.title
+        _tell_files(write_record(model.run(), file, head, units))
         return 0
     answers = Answers(None if tests is None else tests_of(tests))
     start = start_of(case, answers)

@@ -178,46 +178,44 @@ class Answers:
         about |= {"notes": list(dict.fromkeys(notes)), "stopped": stopped}
         return Answered(result, drawn if result is not None else None, case, **about)
 
-    def _columns(self, asked: Asked) -> list[tuple[Any, Answered]]:
-        """Return each column of the state with its response."""
+    def _columns(
+        self, asked: Asked, pause: Pause, answer: Callable[[Any, Answered], dict[str, Any]]
+    ) -> dict[str, Any]:
+        """Return the answer about each column of the state with its response."""
         cases = state_of(asked)
         if any(map(is_frame, cases)):
             raise RefusedError(400, "state: this is asked of columns")
-        return [(case, self.solved(case)) for case in cases]
+        columns = []
+        for case, found in [(case, self.solved(case)) for case in cases]:
+            pause()
+            columns.append(answer(case, found))
+        return {"columns": columns}
 
     def loops(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the loop of each column, or of a frame, with limit states and its sections."""
         cases = state_of(asked)
         if is_frame(cases[0]):
-            return {"frame": self._frame(cases[0])}
-        columns = []
-        for case in cases:
-            begun = time.perf_counter()
-            found = self.solved(case)
-            answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
-            if found.drawn is not None:
-                answer["figure"] = _figure(found.drawn.section)
-                answer["model"] = found.drawn.column.model
-            else:
-                section = next(iter(found.sections.values()), None)
-                answer["figure"] = None if section is None else _figure(section)
-            if found.result is not None:
-                factor = 1.0 if found.drawn is None else found.drawn.factor
-                answer |= to_json(found.result, factor) | {"stopped": found.stopped}
-                answer["title"] = found.case.title if found.case else ""
-            answer["seconds"] = round(max(found.seconds, time.perf_counter() - begun), 4)
-            columns.append(answer)
-        return {"columns": columns}
+            return {"frame": self._loop(cases[0])}
+        return {"columns": [self._loop(case) for case in cases]}
 
-    def _frame(self, case: Any) -> dict[str, Any]:
+    def _loop(self, case: Any) -> dict[str, Any]:
         begun = time.perf_counter()
         found = self.solved(case)
+        drawn = found.drawn
         answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
-        answer |= {"stopped": found.stopped, "sections": {}}
-        for name, section in found.sections.items():
-            answer["sections"][name] = None if section is None else _figure(section)
-        if found.result is not None:
-            answer |= frames.to_json(found.result)
+        figures = {n: None if one is None else _figure(one) for n, one in found.sections.items()}
+        if is_frame(case):
+            answer |= {"stopped": found.stopped, "sections": figures}
+            if found.result is not None:
+                answer |= frames.to_json(found.result)
+        else:
+            answer["figure"] = next(iter(figures.values()), None)
+            if drawn is not None:
+                answer |= {"figure": _figure(drawn.section), "model": drawn.column.model}
+            if found.result is not None:
+                answer |= to_json(found.result, 1.0 if drawn is None else drawn.factor)
+                answer |= {"stopped": found.stopped}
+                answer["title"] = found.case.title if found.case else ""
         return answer | {"seconds": round(max(found.seconds, time.perf_counter() - begun), 4)}
 
     def checks(self, asked: Asked, pause: Pause) -> dict[str, Any]:
@@ -236,49 +234,44 @@ class Answers:
         if code not in ("aci318", "ec2"):
             raise RefusedError(400, "code must be aci318 or ec2")
 
-        def answer(drawn: Drawn) -> dict[str, Any]:
-            section, load = drawn.section, drawn.column.axial_load
+        def answer(_: Any, found: Answered) -> dict[str, Any]:
+            if found.drawn is None:
+                return {}
+            section, load = found.drawn.section, found.drawn.column.axial_load
             return {
                 "curvature": [_tried(_curvature, section, load, c) for c in (False, True)],
                 "code": _tried(_interaction, section, code),
-                "codes": _tried(_codes, section, drawn.span, load),
+                "codes": _tried(_codes, section, found.drawn.span, load),
                 "axial_load": number(load),
             }
 
-        drawn = (found.drawn for _, found in self._columns(asked))
-        return {"columns": [{} if one is None else answer(one) for one in drawn]}
+        return self._columns(asked, pause, answer)
 
     def own(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return interaction diagrams by material laws, of section and joint; they take long."""
-        columns = []
-        for _, found in self._columns(asked):
-            answer = {}
-            if found.drawn is not None:
-                column = found.drawn.column
-                answer["section"] = _tried(_interaction, found.drawn.section, None)
-                if isinstance(column, LayeredColumn):
-                    answer["joint"] = _tried(_joint, column)
-            columns.append(answer)
-        return {"columns": columns}
+
+        def answer(_: Any, found: Answered) -> dict[str, Any]:
+            if found.drawn is None:
+                return {}
+            column, section = found.drawn.column, _tried(_interaction, found.drawn.section, None)
+            layered = isinstance(column, LayeredColumn)
+            return {"section": section} | ({"joint": _tried(_joint, column)} if layered else {})
+
+        return self._columns(asked, pause, answer)
 
     # ---- uncertainty ----------------------------------------------------------------------------
 
     def bands(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return for each path the band that holds 80 % of the points of left-out tests."""
-        columns = []
-        for _, found in self._columns(asked):
-            pause()
-            columns.append(_band(found))
-        return {"columns": columns}
+        return self._columns(asked, pause, lambda _, found: _band(found))
 
     def scales(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the peak drift under a motion by its scale, times that of the state."""
-        columns: list[dict[str, Any]] = []
-        for case, found in self._columns(asked):
+
+        def answer(case: Any, found: Answered) -> dict[str, Any]:
             drawn = found.drawn is not None and not isinstance(case, str)
             if not drawn or not found.result.dynamic:
-                columns.append({"none": "scales are for a motion of the ground"})
-                continue
+                return {"none": "scales are for a motion of the ground"}
             now = _arguments.number(first(case, "loading").get("scale", 1.0), "scale")
             rows = []
             for scale in _SCALES:
@@ -288,35 +281,36 @@ class Answers:
                 ]
                 result = self._solve(scaled).result
                 if result is not None:
-                    peak = float(np.max(np.abs(result.drift), initial=0.0))
                     status = result.summary["status"]
-                    rows.append({"scale": scale * now, "drift": number(peak), "status": status})
+                    rows.append(
+                        {"scale": scale * now, "drift": _peak(result.drift), "status": status}
+                    )
                 pause()
-            columns.append({"scales": rows})
-        return {"columns": columns}
+            return {"scales": rows}
+
+        return self._columns(asked, pause, answer)
 
     def nearest(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the tests that are most like each column."""
-        if self.near is None:
+        tests = self.near
+        if tests is None:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
-        columns: list[dict[str, Any]] = []
-        for case, found in self._columns(asked):
+
+        def answer(case: Any, found: Answered) -> dict[str, Any]:
             drawn = None if isinstance(case, str) else found.drawn
             if drawn is None or drawn.section.hollow:
-                columns.append({"none": "the folder has no tests of such columns"})
-                continue
+                return {"none": "the folder has no tests of such columns"}
             try:
-                hinge = drawn.section, drawn.span, drawn.column.axial_load
-                near = nearest(*hinge, self.near, _TESTS)
+                near = nearest(drawn.section, drawn.span, drawn.column.axial_load, tests, _TESTS)
             except (RbsdemError, ValueError) as error:
-                columns.append({"none": str(error)})
-                continue
+                return {"none": str(error)}
             rows = []
             for one in near:
                 pause()
                 rows.append(_card(_predicted(one.specimen)) | {"distance": round(one.distance, 3)})
-            columns.append({"tests": rows})
-        return {"columns": columns, "tests": len(self.near)}
+            return {"tests": rows}
+
+        return self._columns(asked, pause, answer) | {"tests": len(tests)}
 
     # ---- texts ----------------------------------------------------------------------------------
 

@@ -214,24 +214,19 @@ def report(
     Path
         The file.
     """
-    return write_record(
-        record, path, title=title, author=author, project=project, date=date, units=units, **asked
-    )[0]
+    about = {"title": title, "author": author, "project": project, "date": date}
+    return write_record(record, path, about, units, **asked)[0]
 
 
 def write_record(
     record: Any,
     path: str | os.PathLike[str],
-    *,
-    title: str | None = "",
-    author: str | None = "",
-    project: str | None = "",
-    date: str | None = None,
+    about: Mapping[str, str | None],
     units: tuple[str, str] = ("mm", "kN"),
     **asked: Any,
 ) -> list[Path]:
-    """Write a report as `report` does; return all of its files."""
-    for name, text in (("title", title), ("author", author), ("project", project), ("date", date)):
+    """Write a report as `report` does, with title, author, project, date; return all its files."""
+    for name, text in about.items():
         if not isinstance(text, str | None):
             raise InputError(f"report: {name} = {_arguments.shown(text)} must be a text")
     if not (isinstance(units, (tuple, list)) and len(units) == 2):
@@ -242,11 +237,12 @@ def write_record(
     case = case_of(record) if isinstance(record, ColumnResult | FrameResult) else None
     target = Path(path)
     refuse_other_page(target)
-    title = title or (case.title if case else "") or target.stem
+    title = about.get("title") or (case.title if case else "") or target.stem
     data = _column_data(record, case, title) if case and isinstance(record, ColumnResult) else None
     with paper_units(*units):
         sheets = list(sheets_of(record, **asked))
-        front = head(title, author or "", project or "", date) + html_of(sheets[0])
+        author, project = (about.get(name) or "" for name in ("author", "project"))
+        front = head(title, author, project, about.get("date")) + html_of(sheets[0])
         # Sheets whose table alone is beside the report have nothing to show.
         behind = "".join(
             html_of(sheet) for sheet in sheets[1:] if sheet.figures or not sheet.beside
