@@ -208,8 +208,7 @@ class Layout:
         _arguments.convert(self, "layout")
         if self.number > _MOST_BARS:
             raise InputError(f"layout: number = {self.number} must not be above {_MOST_BARS}")
-        _check_positive(self, "layout", diameter="m", between_diameter="m")
-        _check_bar(self, "layout", "diameter", "between_diameter")
+        _check_sizes(self, "layout", diameter="m", between_diameter="m")
 
     @property
     def steels(self) -> list[Steel]:
@@ -363,8 +362,7 @@ class Bars:
     def __post_init__(self) -> None:
         _arguments.convert(self, "Bars")
         _arguments.within(self.number, "Bars: number", least=1, most=_MOST_BARS)
-        _check_positive(self, "Bars", diameter="m")
-        _check_bar(self, "Bars", "diameter")
+        _check_sizes(self, "Bars", diameter="m")
         if self.clear is not None:
             _arguments.within(self.clear, "Bars: clear", least=0.0, most=1.0, unit="m")
 
@@ -445,8 +443,7 @@ class Ties:
         _arguments.convert(self, "ties")
         if given(self.legs_across) is None:
             _arguments.put(self, legs_across=Derived(self.legs))
-        _check_positive(self, "ties", diameter="m", spacing="m", legs="", legs_across="")
-        _check_bar(self, "ties", "diameter")
+        _check_sizes(self, "ties", diameter="m", spacing="m", legs="", legs_across="")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the ties with their values; `steel` is the number of their steel."""
@@ -482,9 +479,7 @@ class Lap:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "lap")
-        _check_positive(self, "lap", length="m")
-        if self.development_length is not None:
-            _check_positive(self, "lap", development_length="m")
+        _check_sizes(self, "lap", length="m", development_length="m")
 
     def developed(self, yield_stress: float, fc: float, diameter: float, axis: float) -> float:
         """Return l_b/l_d.
@@ -545,8 +540,7 @@ class Spiral:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "spiral")
-        _check_positive(self, "spiral", diameter="m", spacing="m")
-        _check_bar(self, "spiral", "diameter")
+        _check_sizes(self, "spiral", diameter="m", spacing="m")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the spiral with their values; `steel` is the number of its steel."""
@@ -559,20 +553,15 @@ def _area(diameter: float) -> float:
     return 0.25 * math.pi * diameter * diameter
 
 
-def _check_positive(record: object, who: str, **units: str) -> None:
-    """Refuse sizes of bars that are not above zero; their units are given by name."""
+def _check_sizes(record: object, who: str, **units: str) -> None:
+    """Refuse sizes of bars that are not above zero, and diameters that no bar has."""
     for name, unit in units.items():
         value = getattr(record, name)
         if value is not None and not 0 < value < math.inf:
             told = f"{who}: {name} = {value} {unit}".rstrip()
             raise InputError(f"{told} must be finite and above zero")
-
-
-def _check_bar(record: object, who: str, *names: str) -> None:
-    """Refuse diameters that no bar has; else every bar would be reported as outside the section."""
-    for name in names:
-        value = getattr(record, name)
-        if value is not None and value > THICKEST:
+        # Else every bar would be reported as outside the section.
+        if value is not None and name.endswith("diameter") and value > THICKEST:
             raise InputError(
                 f"{who}: {name} = {value:.6g} m must not be above {THICKEST} (20 mm is 0.02)"
             )

@@ -199,20 +199,27 @@ class Section(_Fields, ABC):
     def outline(self) -> Array:
         """Return the outline of the concrete, a point a row: x and y [m]."""
 
-    @abstractmethod
+    @property
+    def side_cover(self) -> float | None:
+        """The cover at the sides [m]: the cover, unless the shape has another."""
+        return self.cover
+
     def void(self, distance: float = 0.0) -> Array:
         """Return a line around the void at a distance [m]; without points in a solid section."""
+        del distance
+        return _NO_LINE
 
-    @abstractmethod
     def hoop_line(self, inset: float, bend: float) -> Array:
         """Return the closed line at `inset` inside the outer edge of the transverse bars [m].
 
-        `bend` is the radius of its corners [m].
+        `bend` is the radius of its corners [m]. Without points where hoops are legs alone.
         """
+        del inset, bend
+        return _NO_LINE
 
-    @abstractmethod
     def inner_legs(self) -> list[Array]:
         """Return the corners of each leg of the ties between the outer ones [m]."""
+        return []
 
     @abstractmethod
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
@@ -926,11 +933,6 @@ class CircularSection(Section):
         return self.diameter
 
     @property
-    def side_cover(self) -> float:
-        """The cover [m]."""
-        return self.cover
-
-    @property
     def turned(self) -> Section:
         """The section as it is loaded along its width, which is the same."""
         return self
@@ -973,10 +975,6 @@ class CircularSection(Section):
         """Return the circle at a distance inside the outer edge of the spiral [m]."""
         del bend  # A circle has no corners.
         return _ring(0.5 * self.diameter - self.cover - inset)
-
-    def inner_legs(self) -> list[Array]:
-        """Return an empty list: a spiral has no legs inside."""
-        return []
 
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
         """Return where bars stand across the width: around the circle, left and right in turn.

@@ -21,11 +21,10 @@ from rbsdem.model.materials import (
     Layout,
     Steel,
     Ties,
-    _check_bar,
-    _check_positive,
+    _check_sizes,
     rows_of_bars,
 )
-from rbsdem.model.shape import _NO_LINE, Section, _bar, _box, _in_rows
+from rbsdem.model.shape import Section, _bar, _box, _in_rows
 
 #: Hoops farther apart than this many diameters of the bars hold neither bars nor concrete.
 _FARTHEST = 16.0
@@ -60,8 +59,7 @@ class Hoops:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "hoops")
-        _check_positive(self, "hoops", diameter="m", spacing="m", legs_along="", legs_across="")
-        _check_bar(self, "hoops", "diameter")
+        _check_sizes(self, "hoops", diameter="m", spacing="m", legs_along="", legs_across="")
 
 
 @dataclass(frozen=True)
@@ -93,8 +91,7 @@ class Curtain:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "curtain")
-        _check_positive(self, "curtain", diameter="m", spacing="m", faces="")
-        _check_bar(self, "curtain", "diameter")
+        _check_sizes(self, "curtain", diameter="m", spacing="m", faces="")
 
     @property
     def area(self) -> float:
@@ -142,7 +139,7 @@ class Boundary:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "boundary")
-        _check_positive(self, "boundary", length="m", thickness="m", bar_diameter="m")
+        _check_sizes(self, "boundary", length="m", thickness="m", bar_diameter="m")
         if isinstance(self.bars, Bars):
             row, two = self.bars, self.bars.number // 2
             each = [2] * two + [1] * (row.number % 2)
@@ -435,11 +432,6 @@ class WallSection(Section):
         return self.length
 
     @property
-    def side_cover(self) -> float:
-        """The cover [m]."""
-        return self.cover
-
-    @property
     def web_width(self) -> float:
         """Thickness of the web, which carries shear [m]."""
         return self.thickness
@@ -483,16 +475,6 @@ class WallSection(Section):
             right += [(web, near - half), (0.5 * first, near - half)]
         side = np.array([*right, (0.5 * first, -half)])
         return np.vstack([side, side[::-1] * [-1, 1]])
-
-    def void(self, distance: float = 0.0) -> Array:
-        """Return no points: walls are solid."""
-        del distance
-        return _NO_LINE
-
-    def hoop_line(self, inset: float, bend: float) -> Array:
-        """Return no points: hoops are around the boundary elements alone, see `inner_legs`."""
-        del inset, bend
-        return _NO_LINE
 
     def inner_legs(self) -> list[Array]:
         """Return the corners of each leg of boundary hoops, and of the horizontal bars [m]."""
