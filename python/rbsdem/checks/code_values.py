@@ -546,10 +546,6 @@ def _idealised(d: Array, f: Array) -> float:
     return math.nan
 
 
-def _value(comparison: CodeComparison, name: str) -> float:
-    return comparison.values[name]
-
-
 def _at_yield(comparison: CodeComparison, name: str) -> float:
     """Return the drift at yield, by a value or by a share of the gross stiffness."""
     return yield_drift(comparison.values, name) if "stiffness" in name else comparison.values[name]
@@ -567,10 +563,6 @@ def _largest(comparison: CodeComparison, name: str) -> float:
     return (
         math.nan if line is None else float(line.force(comparison.span, comparison.leaning).max())
     )
-
-
-def _loss(comparison: CodeComparison, name: str) -> float:
-    return drift_at_loss(comparison.values, name)
 
 
 def _axial_failure(comparison: CodeComparison, name: str) -> float:
@@ -599,9 +591,9 @@ _QUANTITIES: dict[str, tuple[str, Callable[[CodeComparison, str], float], dict[s
     "stiffness": ("N/m", _secant, _YIELD),
     "yield_drift": ("drift", _at_yield, _YIELD),
     "largest_force": ("N", _largest, {name: name for name in _YIELD}),
-    "shear_strength": ("N", _value, _SHEAR),
-    "spalling": ("drift", _value, {"Berry": "berry.spalling"}),
-    "bar_buckling": ("drift", _value, _BUCKLING),
-    "strength_loss": ("drift", _loss, _LOSS),
+    "shear_strength": ("N", lambda c, key: c.values[key], _SHEAR),
+    "spalling": ("drift", lambda c, key: c.values[key], {"Berry": "berry.spalling"}),
+    "bar_buckling": ("drift", lambda c, key: c.values[key], _BUCKLING),
+    "strength_loss": ("drift", lambda c, key: drift_at_loss(c.values, key), _LOSS),
     "axial_failure": ("drift", _axial_failure, _AXIAL),
 }

@@ -183,26 +183,19 @@ def measured_test(
     force: Array,
     code: int | None,
     who: str,
-    *,
-    length: float,
-    axial_load: float,
-    measured_length: float | None,
-    top_length: float | None,
-    bottom_length: float | None,
+    **levers: Any,
 ) -> MeasuredTest:
-    """Return the test of two columns of a file; `who` stands in front of messages."""
-    levers: dict[str, Any] = {"length": length, "measured_length": measured_length}
-    ends: dict[str, Any] = {"top_length": top_length, "bottom_length": bottom_length}
+    """Return the test of two columns of a file and `net_force`'s levers; `who` begins messages."""
     try:
-        axial_load = _arguments.number(axial_load, "axial_load")
-        net = net_force(displacement, force, code=code, axial_load=axial_load, **levers, **ends)
+        axial_load = _arguments.number(levers["axial_load"], "axial_load")
+        net = net_force(displacement, force, code=code, **levers)
     except InputError as error:
         raise InputError(f"{who}: {error}") from error
-    top = displacement.copy()
+    top, length = displacement.copy(), levers["length"]
     if not math.isnan(length):
         # As in the manual's rules for P-Delta: the column stays straight above its hinge.
-        top = displacement * (length / (measured_length or length))
-    above = 0.0 if code == 4 else top_length or 0.0
+        top = displacement * (length / (levers["measured_length"] or length))
+    above = 0.0 if code == 4 else levers["top_length"] or 0.0
     columns = top, net, displacement, force
     return MeasuredTest(name, *columns, length, axial_load, code, length + above)
 

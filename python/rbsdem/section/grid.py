@@ -270,7 +270,7 @@ class Grid:
 
     def check_places(self, name: str, cells: Mapping[tuple[int, int], Any], lines: int) -> None:
         """Refuse places that the grid does not have."""
-        line = "bay" if name == "beams" else "line"
+        line = "bay" if name in ("beams", "infills") else "line"
         for at, storey in cells:
             for what, given, most in ((line, at, lines), ("storey", storey, len(self.storeys))):
                 if not 0 <= given <= most:
@@ -551,13 +551,7 @@ class Grid:
     def infilled(self, cells: Mapping[tuple[int, int], Infill | None]) -> list[InfilledBay]:
         """Return the infills in their places."""
         found = []
-        for what, at, most in (("bay", 0, len(self.bays)), ("storey", 1, len(self.storeys))):
-            for cell in cells:
-                if cell[at] > most:
-                    raise InputError(
-                        f"frame: infills: {what} {cell[at]}, but the frame has {most}; correct it, "
-                        "or give 0 for all"
-                    )
+        self.check_places("infills", cells, len(self.bays))
         for (i, k), beam in self.beams.items():
             infill = at_place(cells, i, k)
             if infill is None:
