@@ -19,8 +19,8 @@ from rbsdem.output.frames import (
     UNDEFORMED,
     deformed,
     hinge_points,
-    rounded,
     row_of,
+    scale_of,
     spring_rotations,
 )
 from rbsdem.output.style import MODEL_LINE, axes_or_new, new_axes, style, style_of
@@ -102,10 +102,7 @@ def plan(
             row = row_of(result, row)
             path = np.column_stack((result.floor_x[:, at], result.floor_y[:, at]))
             moved = np.array([result.moved(place)[row, at] for place in places])
-            largest = float(np.hypot(*moved.T).max())
-            if scale is None:
-                scale = rounded(0.1 * max(wide, high) / largest) if largest > 0 else 1.0
-            scale = _arguments.number(scale, "plot.plan: scale")
+            scale = scale_of(scale, np.hypot(*moved.T), max(wide, high), "plot.plan")
             drawn.plot(*(centre + scale * path).T, **MODEL_LINE | {"color": "#c0392b", "zorder": 4})
             for line in lines:
                 ends = np.array([result.moved(end)[row, at] for end in line[[0, -1]]])
@@ -157,11 +154,8 @@ def building(
     size = float(max(np.ptp(structure.corners, axis=0).max(), structure.parts.y.max()))
     if result is not None:
         row = row_of(result, row)
-        moved = [result.moved(corner)[row] for corner in structure.corners]
-        largest = float(np.hypot(*np.moveaxis(np.array(moved), -1, 0)).max())
-        if scale is None:
-            scale = rounded(0.1 * size / largest) if largest > 0 else 1.0
-        scale = _arguments.number(scale, "plot.building: scale")
+        moved = np.array([result.moved(corner)[row] for corner in structure.corners])
+        scale = scale_of(scale, np.hypot(*np.moveaxis(moved, -1, 0)), size, "plot.building")
     points: dict[str, list[Array]] = {state: [] for state in STATES}
     with style_of(drawn):
         for plane in structure.planes:

@@ -33,18 +33,24 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-#: Limit states of a hinge in their order, their names in a legend, and their fills.
-STATES = {
-    "": ("not reached", "white"),
-    "cracking": ("cracked", "0.7"),
-    "yield": ("yielded", "black"),
-    "web_yield": ("web yielded", "0.35"),
-    "spalling": ("cover spalled", "#e67e22"),
-    "crushing": ("core crushed", "#d35400"),
-    "bar_buckling": ("bars buckle", "#2e86c1"),
-    "bar_fracture": ("bar broken", "#1b2631"),
-    "cap": ("beyond its cap", "#c0392b"),
-    FAILS: ("failed in shear", "#8e44ad"),
+#: Limit states in their order: what a hinge is then, and its fill; what it does, and the marker of
+#: that on a path with its fill. Of infills, and of members that are lost, there is no hinge.
+_LOOKS = {
+    "cracking": ("cracked", "0.7", "cracks", "v", "white"),
+    "yield": ("yielded", "black", "yields", "o", "white"),
+    "web_yield": ("web yielded", "0.35", "yields in its web", "o", "0.35"),
+    "spalling": ("cover spalled", "#e67e22", "spalls", "^", "#e67e22"),
+    "crushing": ("core crushed", "#d35400", "is crushed", "^", "#d35400"),
+    "bar_buckling": ("bars buckle", "#2e86c1", "has bars that buckle", "d", "#2e86c1"),
+    "bar_fracture": ("bar broken", "#1b2631", "has a broken bar", "X", "#1b2631"),
+    "cap": ("beyond its cap", "#c0392b", "reaches its cap", "D", "#c0392b"),
+    "residual": ("", "", "is at what is left of it", "v", "#a04a26"),
+    FAILS: ("failed in shear", "#8e44ad", "fails in shear", "s", "#8e44ad"),
+    "lost": ("", "", "is lost", "X", "#c0392b"),
+}
+#: Labels and fills of hinges.
+STATES = {"": ("not reached", "white")} | {
+    name: (label, fill) for name, (label, fill, *_) in _LOOKS.items() if label
 }
 HINGE: dict[str, Any] = {
     "linestyle": "none",
@@ -68,32 +74,9 @@ _SUPPORT: dict[str, Any] = {"color": "black", "linewidth": 0.7, "zorder": 2}
 
 #: Markers of the limit states on a path.
 _MARKS: dict[str, dict[str, Any]] = {
-    "cracking": {"marker": "v", "markerfacecolor": "white"},
-    "yield": {"marker": "o", "markerfacecolor": "white"},
-    "web_yield": {"marker": "o", "markerfacecolor": "0.35"},
-    "spalling": {"marker": "^", "markerfacecolor": "#e67e22"},
-    "crushing": {"marker": "^", "markerfacecolor": "#d35400"},
-    "bar_buckling": {"marker": "d", "markerfacecolor": "#2e86c1"},
-    "bar_fracture": {"marker": "X", "markerfacecolor": "#1b2631"},
-    "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
-    "residual": {"marker": "v", "markerfacecolor": "#a04a26"},
-    FAILS: {"marker": "s", "markerfacecolor": "#8e44ad"},
-    "lost": {"marker": "X", "markerfacecolor": "#c0392b", "markersize": 6.0},
+    name: {"marker": marker, "markerfacecolor": fill, "markersize": 6.0 if name == "lost" else 4.0}
+    for name, (*_, marker, fill) in _LOOKS.items()
 }
-_VERBS = {
-    "cracking": "cracks",
-    "yield": "yields",
-    "web_yield": "yields in its web",
-    "spalling": "spalls",
-    "crushing": "is crushed",
-    "bar_buckling": "has bars that buckle",
-    "bar_fracture": "has a broken bar",
-    "cap": "reaches its cap",
-    "residual": "is at what is left of it",
-    FAILS: "fails in shear",
-    "lost": "is lost",
-}
-
 #: States of infills, their names in a legend and their fills, and how panels are drawn.
 _PANELS = {
     "": ("infill", "#f3e3da"),
@@ -161,10 +144,7 @@ def frame(
     size = _size(structure)
     if result is not None:
         row = row_of(result, row)
-        largest = float(np.hypot(result.x[row], result.y[row]).max())
-        if scale is None:
-            scale = rounded(0.1 * size / largest) if largest > 0 else 1.0
-        scale = _arguments.number(scale, "plot.frame: scale")
+        scale = scale_of(scale, np.hypot(result.x[row], result.y[row]), size, "plot.frame")
     with axes_or_new(ax, _figure_size(structure)) as drawn:
         _draw_supports(drawn, structure, size)
         moved = _undeformed(drawn, structure, result is None)
@@ -266,7 +246,7 @@ def pushover(result: FrameResult | BuildingResult, *, ax: Axes | None = None, **
             drawn.plot(
                 *(values[rows] for values in way),
                 **HINGE | mark,
-                label=", ".join(filter(None, (first.member, end, _VERBS[what]))) + more,
+                label=", ".join(filter(None, (first.member, end, _LOOKS[what][2]))) + more,
             )
         if result.events:
             drawn.legend(loc="best", handletextpad=0.2)
@@ -450,7 +430,15 @@ def _figure_size(structure: Frame) -> tuple[float, float]:
     return width, float(np.clip(0.9 + 0.85 * width * high / max(wide, 0.3 * high), 1.8, 6.5))
 
 
-def rounded(value: float) -> float:
+def scale_of(scale: float | None, moved: Array, size: float, who: str) -> float:
+    """Return the factor of displacements: that given, or the largest is a tenth of a size [m]."""
+    if scale is not None:
+        return _arguments.number(scale, f"{who}: scale")
+    largest = float(np.max(moved))
+    return _rounded(0.1 * size / largest) if largest > 0 else 1.0
+
+
+def _rounded(value: float) -> float:
     """Return the nearest of 1, 2, 5, 10 and so on."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
