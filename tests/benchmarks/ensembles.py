@@ -20,7 +20,8 @@ from benchmark import record_20_s
 from rows import Row, show
 
 import rbsdem
-from rbsdem.many.inputs import Motion, core_measures
+from rbsdem import _core
+from rbsdem.many.inputs import Motion
 from rbsdem.many.plan import Plan, compute
 
 #: Runs of the largest ensemble.
@@ -64,7 +65,7 @@ def lanes(repeats: int, runs: int) -> list[Row]:
             few = dataclasses.replace(task, column=place[:8], motion=place[:8], scale=scales[:8])
             alone, _ = processor(lambda few=few: compute(few, kernel=-1), 1)
             times, answer = processor(lambda task=task: compute(task), repeats)
-            numbers = dict(zip(core_measures(), answer.values.sum(axis=1), strict=True))
+            numbers = dict(zip(_core.measures(), answer.values.sum(axis=1), strict=True))
             row = Row(f"{method}, lanes, record x {scale:g}", "ns/column-step", goal)
             row.values = [1e9 * t / numbers["steps"] for t in times]
             steps = numbers["steps"] * 8 / runs

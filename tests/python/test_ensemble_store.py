@@ -16,7 +16,7 @@ import pytest
 from test_ensembles import column, motion
 
 import rbsdem
-from rbsdem import InputError
+from rbsdem import InputError, _core
 from rbsdem.many import ensemble, store
 from rbsdem.many.inputs import MEASURES, STATUSES
 from rbsdem.many.plan import Plan
@@ -56,9 +56,7 @@ def test_a_second_start_computes_what_is_missing(tmp_path: Path) -> None:
     for number in range(24):
         status, numbers = kept[str(first.column[number]), first.scale[number]]
         assert STATUSES[status] == first.status[number]
-        assert (
-            np.frombuffer(numbers)[0] == first.measures[ensemble.inputs.core_measures()[0]][number]
-        )
+        assert np.frombuffer(numbers)[0] == first.measures[_core.measures()[0]][number]
     path = tmp_path / "part-1-of-1.sqlite"
     with closing(sqlite3.connect(path, isolation_level=None)) as file:
         file.execute("delete from runs where scale > 1.0")

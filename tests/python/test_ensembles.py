@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import InputError, SolveError
-from rbsdem.many.inputs import LIMIT_STATES, MEASURES, STATUSES, Motion, core_measures
+from rbsdem import InputError, SolveError, _core
+from rbsdem.many.inputs import LIMIT_STATES, MEASURES, STATUSES, Motion
 from rbsdem.many.plan import Plan, compute
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, PeakOriented, Takeda
 
@@ -317,7 +317,7 @@ def test_lanes_have_the_bits_of_a_run_alone(columns: Callable, settings: dict) -
         np.testing.assert_array_equal(found.fates, alone.fates)
         np.testing.assert_array_equal(found.values, alone.values)
         assert found.errors == alone.errors
-    events = alone.values[core_measures().index("events")]
+    events = alone.values[_core.measures().index("events")]
     assert events[alone.fates != STATUSES.index("failed")].max() > 100
 
 

@@ -7,13 +7,12 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any, TypeAlias
 from unicodedata import category
 
 import numpy as np
 
-from rbsdem import _arguments, _core
+from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
@@ -288,12 +287,6 @@ LIMIT_STATES = {name: what for name, what in WATCHED.items() if name != "first_y
 
 #: Measures that are whole numbers.
 COUNTS = ("steps", "events", "cut_steps")
-
-
-@cache
-def core_measures() -> tuple[str, ...]:
-    """Return the names of the measures that the Fortran part returns, in its order."""
-    return _core.measures()
 
 
 def limit_states_among(names: Sequence[str]) -> tuple[str, ...]:

@@ -68,7 +68,7 @@ class Plan:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the measures, those of functions left out."""
-        return inputs.core_measures() + self.states + inputs.storey_measures(self.storeys)
+        return _core.measures() + self.states + inputs.storey_measures(self.storeys)
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -173,7 +173,7 @@ def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Out
     control = np.zeros(2, dtype=np.int32) if control is None else control
     batch = _batch(task, [watched(column, task.states) for column in task.columns])
     runs = {"columns": task.column + 1, "motions": task.motion + 1, "scales": task.scale}
-    number = len(inputs.core_measures()) + len(task.states)
+    number = len(_core.measures()) + len(task.states)
     asked = {"measures": number, "storeys": task.storeys, "level": kernel}
     fates, values, errors = _core.run_ensemble(batch, control, **runs, **asked)
     _name_joints(task, values)
@@ -189,7 +189,7 @@ def _name_joints(task: Plan, values: Array) -> None:
 
     The solver counts them from the ground, from 1, a footing's included.
     """
-    lost = values[inputs.core_measures().index("lost_joint")]
+    lost = values[_core.measures().index("lost_joint")]
     lost[lost == 0] = np.nan
     for run in np.flatnonzero(lost > 0):
         lost[run] = task.columns[task.column[run]].joint_numbers[int(lost[run]) - 1]
