@@ -217,24 +217,6 @@ def test_ground_that_no_earthquake_moves_is_told(run_cli, tmp_path):
     assert "5 g" not in run_cli(["run", case, "-o", "b.csv"], tmp_path).stdout
 
 
-def test_a_span_without_a_section_is_told(run_cli, tmp_path):
-    """As the package tells it (test_frames.py): w L^2/8 of 1e5 N/m on 6 m over 30 kN m."""
-    case = write(
-        tmp_path,
-        "&frame pattern = 'uniform', control_node = 'b' /\n"
-        "&node name = 'a', x = 0, y = 0, support = 'pinned' /\n"
-        "&node name = 'b', x = 6, y = 0, support = 'roller' /\n"
-        "&member_kind name = 'beam', modulus = 3e10, area = 0.1, inertia = 1e-3 /\n"
-        "&flexure kind = 'beam', position = 0, 1, rule = 'bilinear', k = 1e9, d_y = 3e-5,"
-        " k_post = 0 /\n&member name = 'B', from = 'a', to = 'b', kind = 'beam', load = 1e5 /\n"
-        "&loading drive = 'displacement', values = 0 /\n",
-    )
-    told = (
-        "note: member B: at 0.5 of its clear length the moment in its span reaches 450000 N m, 15"
-    )
-    assert told in run_cli(["run", case], tmp_path).stdout
-
-
 def test_csv_says_version_case_units_and_is_read_by_numpy(run_cli, case_text, tmp_path):
     write(tmp_path, case_text(case="title = 'Säule, \"Nr 1\"; half'"))
     quick(run_cli, tmp_path, "run", "case.nml")
