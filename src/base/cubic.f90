@@ -1,4 +1,5 @@
-!> Hermite's cubic over a step: values at both ends with their rates, over the share s of the step, 0 to 1.
+!> Hermite's cubic over a step: values at both ends with their slopes, over the share s of the step, 0 to 1.
+!> As an array c it is the first value, the last value, the first slope, the last slope.
 module rbs_base_cubic
    use rbs_base_kinds, only: wp
    implicit none
@@ -21,9 +22,8 @@ contains
                                          + s*((last - first)*(3.0_wp - 2.0_wp*s) - last_slope*(1.0_wp - s)))
    end function cubic_at
 
-   !> Where it turns within the step, in order; 1 where it does not.
+   !> The shares at which the cubic has an extreme within the step, ascending; 1 for each that it has not.
    pure function turns_of(c) result(s)
-      !> Both values, and both slopes
       real(wp), intent(in) :: c(4)
       real(wp) :: s(2), a, half, root, q
 
@@ -48,7 +48,7 @@ contains
       if (abs(part) < abs(whole) .and. part*whole > 0.0_wp) share = part/whole
    end function share_of
 
-   !> Bound of its size within the step.
+   !> A bound of the cubic's size within the step.
    pure real(wp) function bound_of(c) result(bound)
       real(wp), intent(in) :: c(4)
 
@@ -64,7 +64,7 @@ contains
       largest = value(maxloc(abs(value), dim=1))
    end function largest_of
 
-   !> Where it first has a value or is above it; 2 if it does not within the step.
+   !> The first share at which the cubic reaches a value from below; 2 if it does not within the step.
    pure real(wp) function first_at(c, value) result(s)
       real(wp), intent(in) :: c(4), value
       real(wp) :: node(4), low, high
@@ -74,7 +74,7 @@ contains
       i = findloc(cubic_at(node, c(1), c(2), c(3), c(4)) >= value, .true., dim=1)
       s = merge(0.0_wp, 2.0_wp, i == 1)
       if (i < 2) return
-      ! It rises from the one to the other.
+      ! It rises between these two: bisect.
       low = node(i - 1)
       high = node(i)
       do

@@ -151,8 +151,9 @@ contains
       end select
    end subroutine visit_open
 
-   !> Place of a key of the open group; 0 with a message if the group does not have it. The rule of a
-   !> spring and the shape of a section must be set before the keys that they bring.
+   !> Index of a key of the open group; 0 with a message if the group does not have it, `ignored` without one
+   !> if only the rule of its spring, which is refused elsewhere, is unknown. The rule of a spring and the
+   !> shape of a section must be set before the keys that they bring.
    subroutine find(self, name, where, key_index, messages)
       class(group_reader), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -167,6 +168,7 @@ contains
 
       key_index = find_key(self%keys, name)
       if (key_index > 0) return
+      ! A parameter of another rule?
       do i = 1, merge(size(rule_names), 0, self%is_spring() .and. self%group /= 'layers')
          call keys_of(rule_names(i), others)
          if (find_key(others, name) == 0) cycle

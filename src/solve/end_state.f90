@@ -1,8 +1,8 @@
 !> The state that an analysis ended in, from which another one begins: deformations of the structure, memory
 !> of its springs, and numbers that let the solver continue with the same bits.
 !>
-!> It is one list of numbers. Its head has marks of the structure and the sum of the rest, so that it
-!> can pass through Python or a file.
+!> It is one list of numbers. Its head has marks of the structure and a check sum of the rest, so that
+!> it can pass through Python or a file.
 module rbs_solve_end_state
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
@@ -120,7 +120,7 @@ contains
          self%stream%count = 0
          return
       end if
-      call find_sum(self%stream%value(head + 1:self%stream%count), self%stream%value(4:5))
+      call find_check_sum(self%stream%value(head + 1:self%stream%count), self%stream%value(4:5))
    end subroutine finish_saving
 
    !> Whether an analysis of a structure can begin from the state.
@@ -138,7 +138,7 @@ contains
             return
          end if
          expected = -1.0_wp
-         if (all(ieee_is_finite(value(:count)))) call find_sum(value(head + 1:count), expected)
+         if (all(ieee_is_finite(value(:count)))) call find_check_sum(value(head + 1:count), expected)
          if (abs(value(1) - format) > 0.0_wp .and. ieee_is_finite(value(1))) then
             call fatal_error(error, bad_input, 'initial: the state was written by a version of rbsdem '// &
                              'whose springs remember other things (format '//to_text(value(1))//', here '// &
@@ -248,8 +248,8 @@ contains
       end select
    end subroutine mix_rule
 
-   !> Two numbers that follow from all numbers of a list.
-   pure subroutine find_sum(value, total)
+   !> Check sum of a list, by which a state that was changed or cut off is refused.
+   pure subroutine find_check_sum(value, total)
       real(wp), intent(in) :: value(:)
       real(wp), intent(out) :: total(2)
       integer(int64) :: hash
@@ -260,7 +260,7 @@ contains
          call mix(hash, value(i))
       end do
       call split(hash, total)
-   end subroutine find_sum
+   end subroutine find_check_sum
 
    !> Marsaglia's xorshift (J. Stat. Softw. 8 (2003) 14), which has no overflow.
    pure subroutine mix(hash, x)
@@ -273,7 +273,7 @@ contains
       hash = ieor(hash, ishft(hash, 17))
    end subroutine mix
 
-   !> Whole numbers that a real holds exactly.
+   !> A hash as two whole numbers that reals hold exactly.
    pure subroutine split(hash, parts)
       integer(int64), intent(in) :: hash
       real(wp), intent(out) :: parts(2)

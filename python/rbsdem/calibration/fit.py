@@ -463,8 +463,8 @@ class Misfit:
     def _covariance(self, jacobian: Array, error: Array) -> tuple[Array, Array]:
         """Return the covariance for errors clustered by half cycles, and (J'J)^-1.
 
-        The last is large but finite for parallel columns. Each ratio of a balanced loss is a
-        cluster of its own.
+        The inverse is large but finite for parallel columns of the Jacobian. Each ratio of a
+        balanced loss is a cluster of its own.
         """
         scale = np.sqrt(np.sum(jacobian**2, axis=0))
         values, vectors = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
@@ -475,7 +475,7 @@ class Misfit:
         if several.size <= jacobian.shape[1]:
             return np.full(inverse.shape, np.nan), inverse
         scores = np.array([error[groups == g] @ jacobian[groups == g] for g in several])
-        # As a square, so that round-off leaves no variance below 0.
+        # A product of a matrix with its transpose, so that round-off leaves no variance below 0.
         root = scores @ inverse
         return root.T @ root * (several.size / (several.size - 1.0)), inverse
 

@@ -522,20 +522,23 @@ def tip_rows(d: Array, f: Array) -> np.ndarray:
     return turns
 
 
-def _work_to_zero(d: Array, f: Array, done: Array, first: int, last: int, side: float) -> float:
-    """Return the work up to where the force takes the sign `side` between two rows."""
+def _work_to_zero(d: Array, f: Array, works: Array, first: int, last: int, side: float) -> float:
+    """Return the work up to where the force takes the sign `side` in rows `first` to `last`.
+
+    `works` has the work up to each row.
+    """
     swing = side * f[first : last + 1]
     if swing.size == 0:
-        return float(done[first])
+        return float(works[first])
     at = int(np.argmax(swing >= 0))
     if swing[at] < 0:
         # It never does; take the row where it comes nearest.
-        return float(done[first + int(np.argmax(swing))])
+        return float(works[first + int(np.argmax(swing))])
     row = first + at
     if at == 0:
-        return float(done[row])
+        return float(works[row])
     share = swing[at - 1] / (swing[at - 1] - swing[at])
-    return float(done[row - 1] + 0.5 * f[row - 1] * share * (d[row] - d[row - 1]))
+    return float(works[row - 1] + 0.5 * f[row - 1] * share * (d[row] - d[row - 1]))
 
 
 def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 import numpy as np
 
@@ -238,20 +238,20 @@ class Frame:
     @cached_property
     def geometry(self) -> dict[str, MemberGeometry]:
         """Where each member is, by its name, in the order of the columns of a result."""
-        parts, own = self.parts, {member.name: member for member in self.members}
-        nodes, found, places = np.column_stack((parts.x, parts.y)), {}, self.places
+        parts, free = self.parts, {member.name: member for member in self.members}
+        nodes, geometry, places = np.column_stack((parts.x, parts.y)), {}, self.places
         for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
-            rigid: Any = (own.get(name) or self.kinds[name]).rigid_end
+            rigid: Any = (free.get(name) or self.kinds[name]).rigid_end
             if not isinstance(rigid, tuple):
                 foot = places[name].kind == "column" and places[name].storey == 1
                 rigid = (0.0 if foot else rigid, rigid)
             length = float(np.hypot(*(nodes[end] - nodes[start])))
             axis = (nodes[end] - nodes[start]) / length
             begin = nodes[start] + rigid[0] * axis
-            found[name] = MemberGeometry(
+            geometry[name] = MemberGeometry(
                 name, start, end, axis, rigid, length - sum(rigid), begin, self.load_of(name)
             )
-        return found
+        return geometry
 
     @cached_property
     def supports(self) -> dict[str, str]:
@@ -276,11 +276,13 @@ class Frame:
     @cached_property
     def storey_heights(self) -> tuple[float, ...]:
         """Heights of the storeys of the grid, or between the floors of nodes [m]; empty without."""
-        parts, given = self.parts, self.storeys
+        parts, grid = self.parts, cast("Sequence[float]", self.storeys or ())
         floors = range(parts.floor.max(initial=0) + 1)
+        if grid and len(grid) == len(floors) - 1:
+            return tuple(grid)
+        # Nodes of one's own make the floors, or more floors than the grid has.
         level = [parts.y[parts.floor == i].max() for i in floors] if len(floors) > 1 else [0.0]
-        grid: Any = given if given is not None and len(given) == len(floors) - 1 else None  # type: ignore[arg-type]
-        return tuple(grid or np.diff(level).tolist())
+        return tuple(np.diff(level).tolist())
 
     @property
     def n(self) -> int:

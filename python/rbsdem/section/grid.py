@@ -128,19 +128,19 @@ class FrameDrawing:
 
 
 def infill_groups(places: Sequence[tuple[dict[str, Any], Infill | None]]) -> _core.Statement:
-    """Return the groups of infills and of their places, given by their keys."""
-    infills = list(dict.fromkeys(one for _, one in places if one is not None))
-    taken = {one.name for one in infills}
+    """Return the groups of infills and of their places; None is a panel without one."""
+    infills = list(dict.fromkeys(infill for _, infill in places if infill is not None))
+    taken = {infill.name for infill in infills}
     free = (name for name in (f"infill-{i}" for i in count(1)) if name not in taken)
-    names: dict[Infill | None, str] = {one: one.name or next(free) for one in infills}
+    names: dict[Infill | None, str] = {infill: infill.name or next(free) for infill in infills}
     parts: list[Group] = []
-    for one in infills:
-        length, height = one.opening or (None, None)
-        given = {name: getattr(one, name) for name in ("thickness", "fm", "strength", "peak_drift")}
-        given |= {"opening_length": length, "opening_height": height}
-        parts.append(("infill", {"name": _core.Text(names[one])} | given))
-    for place, cell in places:
-        kind = _core.Text(names.get(cell, "none"))
+    for infill in infills:
+        length, height = infill.opening or (None, None)
+        keys: dict[str, Any] = {"name": _core.Text(names[infill])}
+        keys |= {key: getattr(infill, key) for key in ("thickness", "fm", "strength", "peak_drift")}
+        parts.append(("infill", keys | {"opening_length": length, "opening_height": height}))
+    for place, panel in places:
+        kind = _core.Text(names.get(panel, "none"))
         parts.append(("infill_of", place | {"kind": kind}))
     return _core.joined(parts)
 

@@ -350,16 +350,15 @@ def rigid_ends(
         Compression of the columns, of all or of each [N].
     share : float or "asce", optional
         Which part of the node is rigid in both, from 0 (members reach to the axes) to 1 (to the
-        faces); by default as strength has it, by the rule of ASCE 41-17, 10.4.2.2.1: where the
-        columns are stronger than 1.2 times the beams they are rigid in the node and the beams are
-        not, where they are weaker than 0.8 times the beams the other way round, and half of the
-        node is between.
+        faces); by default by the rule of ASCE 41-17, 10.4.2.2.1: where the columns are stronger
+        than 1.2 times the beams, the columns are rigid in the node; where they are weaker than 0.8
+        times the beams, the beams are; between, half of both.
 
     Returns
     -------
     tuple of float
-        Of the columns, a part of half of the depth of the deepest beam, and of the beams, the same
-        part or another of half of that of the deepest column.
+        Of the columns: a share of half the depth of the deepest beam. Of the beams: a share of half
+        the depth of the deepest column.
 
     Raises
     ------
@@ -373,24 +372,24 @@ def rigid_ends(
     """
     sections = [
         [
-            one if isinstance(one, Section) else checked_section(one)
-            for one in ([given] if isinstance(given, Section) else given)
+            section if isinstance(section, Section) else checked_section(section)
+            for section in ([members] if isinstance(members, Section) else members)
         ]
-        for given in (columns, beams)
+        for members in (columns, beams)
     ]
     if not all(sections):
         raise InputError("rigid_ends: a node has one column and one beam at least; give them")
     if share == "asce":
         loads = np.broadcast_to(axial_load, len(sections[0])).tolist()
         column = sum(map(_strength, sections[0], loads))
-        beam = sum(_strength(one, 0.0) for one in sections[1])
+        beam = sum(_strength(section, 0.0) for section in sections[1])
         parts = (1.0, 0.0) if column > 1.2 * beam else (0.0, 1.0)
         if 0.8 * beam <= column <= 1.2 * beam:
             parts = (0.5, 0.5)
     else:
         part = _arguments.number(share, "rigid_ends: share", least=0.0, most=1.0)
         parts = part, part
-    half = [0.5 * max(one.depth for one in several) for several in sections]
+    half = [0.5 * max(section.depth for section in members) for members in sections]
     return parts[0] * half[1], parts[1] * half[0]
 
 
@@ -398,7 +397,7 @@ def rigid_ends(
 def _strength(section: Section, axial_load: float) -> float:
     """Return the mean of the nominal moments to both sides [N m]."""
     moments = [
-        nominal_moment(one, carried_load(axial_load, one)) for one in (section, section.mirrored)
+        nominal_moment(face, carried_load(axial_load, face)) for face in (section, section.mirrored)
     ]
     if not math.isfinite(sum(moments)):
         raise InputError(

@@ -531,7 +531,7 @@ def _grid_masses(frame: Frame) -> dict[str, float]:
 
 def _inertia_of(planes: Sequence[Plane], laid: Sequence[Any], centres: Array) -> Array:
     """Return the rotary inertia of the masses of frames about the centres of the floors."""
-    found = np.zeros(len(centres))
+    inertia = np.zeros(len(centres))
     for plane, (nodes, _) in zip(planes, laid, strict=True):
         cosine, sine = plane.direction
         for node in nodes:
@@ -542,25 +542,29 @@ def _inertia_of(planes: Sequence[Plane], laid: Sequence[Any], centres: Array) ->
             along = 0.0
             if plane.along is not None:
                 along = plane.along + (node.x or 0.0) - (x * cosine + y * sine)
-            found[node.floor - 1] += node.mass * (across**2 + along**2)
-    return found
+            inertia[node.floor - 1] += node.mass * (across**2 + along**2)
+    return inertia
 
 
 def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return nodes that rise with one of another plane, and columns that are one of another."""
+    """Return what planes share where they cross, by names of a later plane and of an earlier one.
+
+    Nodes at one place rise together, and members between them are one column with one axial force.
+    """
     rises: dict[str, str] = {}
     axial: dict[str, str] = {}
     first: dict[tuple[float, ...], FrameNode] = {}
     columns: dict[tuple[str, str], Member] = {}
-    # Walls and columns before the posts of walls that lie across: the axial force is theirs.
+    # Walls and columns come before the posts, which stand for walls across the plane, so that the
+    # axial force is that of the wall.
     for across, plane, (nodes, members) in (
         (across, *pair) for across in (False, True) for pair in zip(planes, laid, strict=True)
     ):
         if plane.along is None:
             continue
         place_of = {node.name: round((node.x or 0.0) / _ONE_PLACE) for node in nodes}
-        upright = [each for each in members if place_of[each.start] == place_of[each.end]]
-        posts = {place_of[each.start] for each in upright if each.kind.ends == "pinned"}
+        upright = [member for member in members if place_of[member.start] == place_of[member.end]]
+        posts = {place_of[member.start] for member in upright if member.kind.ends == "pinned"}
         at = {}
         for node, place in zip(nodes, plane.places([node.x for node in nodes]), strict=True):
             if (place_of[node.name] in posts) is not across:
@@ -584,7 +588,7 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
                     f"building: column {member.name} is one of three planes, with {other.name}; a "
                     "column has two"
                 )
-            stiff = [each.kind.modulus * each.kind.area for each in (member, other)]
+            stiff = [column.kind.modulus * column.kind.area for column in (member, other)]
             is_post = (member.kind.ends == "pinned") != (other.kind.ends == "pinned")
             if abs(stiff[0] - stiff[1]) > _SAME * max(stiff) and not is_post:
                 raise InputError(

@@ -167,16 +167,16 @@ contains
       real(wp), intent(in) :: d
       real(wp) :: f, beyond
 
-      associate (own => spring%part%given(s), other => spring%part%given(-s))
-         k = own%stiffness()
-         if (d <= own%d_c .or. (d < own%d_y .and. .not. own%d_c > 0.0_wp)) return
-         ! Where the elastic line of this side has the cracking force of the other.
-         beyond = other%f_c/k
-         if (d < own%d_y) then
-            f = own%f_c + (own%f_y - own%f_c)*((d - own%d_c)/(own%d_y - own%d_c))
-            k = (f + other%f_c)/(d + beyond)
+      associate (side => spring%part%given(s), opposite => spring%part%given(-s))
+         k = side%stiffness()
+         if (d <= side%d_c .or. (d < side%d_y .and. .not. side%d_c > 0.0_wp)) return
+         ! How far beyond zero the elastic line has the cracking force of the opposite side.
+         beyond = opposite%f_c/k
+         if (d < side%d_y) then
+            f = side%f_c + (side%f_y - side%f_c)*((d - side%d_c)/(side%d_y - side%d_c))
+            k = (f + opposite%f_c)/(d + beyond)
          else
-            k = (own%f_y + other%f_c)/(own%d_y + beyond)*(own%d_y/d)**spring%part%b0
+            k = (side%f_y + opposite%f_c)/(side%d_y + beyond)*(side%d_y/d)**spring%part%b0
          end if
       end associate
    end function virgin_unloading

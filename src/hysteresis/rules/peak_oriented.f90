@@ -23,8 +23,8 @@ module rbs_hysteresis_rules_peak_oriented
    character(len=*), parameter :: range_of_source = '(the range of its source)'
 
    type, extends(rule_type) :: peak_oriented_rule
-      !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the
-      !> share of the first in the force
+      !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are (1 or 2),
+      !> and the share of the first in the force
       type(capped_part) :: part(2)
       integer :: parts = 1
       real(wp) :: share = 1.0_wp

@@ -1,6 +1,7 @@
 !> Lanes whose springs leave their lines: they follow the result of the kernel,
 !> with all numbers in one record, without the state of a run alone. The record is the same for all lanes, so
-!> that it stays near the processor; a lane keeps its lines.
+!> that it stays near the processor; a lane keeps its lines. In all procedures x has column and clock of every
+!> lane, y motion and springs; l is the lane.
 module rbs_solve_ensemble_one_body_lane
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_segment, only: segment
@@ -18,7 +19,7 @@ module rbs_solve_ensemble_one_body_lane
 
 contains
 
-   !> Masses, lengths and axial force of a column.
+   !> Put masses, lengths and axial force of a column into a lane.
    subroutine body_to_lane(x, l, state)
       type(lane_clock), intent(inout) :: x
       integer, intent(in) :: l
@@ -38,7 +39,7 @@ contains
       end associate
    end subroutine body_to_lane
 
-   !> Parameters of the method, which are the same in all lanes.
+   !> Take over the parameters of the method, which are the same in all lanes.
    pure subroutine method_to_body(method, body)
       type(lane_method), intent(in) :: method
       type(one_body_step), intent(inout) :: body
@@ -50,7 +51,7 @@ contains
       body%wanted = method%wanted
    end subroutine method_to_body
 
-   !> The column of a lane and its step.
+   !> Take over the column of a lane and its step.
    pure subroutine lane_to_body(x, l, damping, body)
       type(lane_clock), intent(in) :: x
       integer, intent(in) :: l
@@ -152,7 +153,7 @@ contains
       end do
    end subroutine follow_trial
 
-   !> Where a spring is in a lane, at the start of a step.
+   !> Take a spring from its lane, as it is at the start of a step.
    pure subroutine spring_from_lane(y, l, i, line, spring)
       type(body_arrays), intent(in) :: y
       integer, intent(in) :: l, i
@@ -181,8 +182,8 @@ contains
       y%direction(l, i) = real(spring%line%unload_on_reversal, wp)
    end subroutine spring_to_lane
 
-   !> The lines of the springs of a run alone, on which the next steps start, and the constants of these
-   !> steps.
+   !> Take from the state of a run alone the lines on which the next steps start; put the constants of these
+   !> steps into the lane.
    subroutine lines_to_lane(x, y, l, state, body, implicit, line)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(in) :: y
@@ -209,7 +210,7 @@ contains
       end if
    end subroutine lines_to_lane
 
-   !> Lines that springs have come to here become those of the run alone.
+   !> Hand the lines that the springs have reached here back to the state of a run alone.
    subroutine lines_from_lane(y, l, line, springs)
       type(body_arrays), intent(in) :: y
       integer, intent(in) :: l
@@ -222,7 +223,8 @@ contains
       end do
    end subroutine lines_from_lane
 
-   !> Resistance and damping per velocity on the present lines, for a step of RK4.
+   !> Renew what a step of RK4 multiplies velocities by, resistance and damping, after a spring has changed
+   !> its line.
    pure subroutine fit_resistance(x, y, l, damping)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(in) :: y

@@ -23,7 +23,8 @@ module rbs_solve_static_corner
    !> of a structure without strength, as a share of its peak.
    real(wp), parameter :: at_rest = 1.0e-6_wp
 
-   !> Efforts of the search for a way forward.
+   !> When a search for a way forward gives up: unless all springs move on or the structure is stable; when
+   !> blocks of springs make no more progress; only after all its tries.
    integer, parameter :: if_stable = 1, by_blocks = 2, to_the_end = 3
 
    !> Share by which rates differ that are not equal, and share of the rate before that is none.
@@ -107,8 +108,7 @@ contains
 
       !> Search a way forward.
       subroutine search(effort)
-         !> No more than whether it is the way of all springs, or the one of a stable structure; as long as
-         !> blocks of springs make progress; all there is
+         !> `if_stable`, `by_blocks` or `to_the_end`
          integer, intent(in) :: effort
          integer :: fewest, left, changes, i
 

@@ -483,15 +483,18 @@ contains
       dx = step%r
       call self%matrix%solve(dx, regular)
       associate (structure => state%motion%structure)
-         if (allocated(self%damped)) call damp_modes(structure%massed, structure%modal_momenta)
+         if (allocated(self%damped)) call apply_modal_damping(structure%massed, structure%modal_momenta)
       end associate
 
    contains
 
-      !> Modal damping by Woodbury's formula. Its flexibility is that of the elastic structure, in which the
-      !> modes are uncoupled; a trial leaves the little that yielding changes in this.
-      subroutine damp_modes(massed, momenta)
+      !> Modal damping by Woodbury's formula: the tangent has it as products of momenta, which would fill the
+      !> band. The flexibility is that of the elastic structure, in which the modes are uncoupled; what
+      !> yielding changes of it, further trials correct.
+      subroutine apply_modal_damping(massed, momenta)
+         !> Unknowns with mass
          integer, intent(in) :: massed(:)
+         !> Momenta of the modes (unknowns with mass, modes)
          real(wp), intent(in) :: momenta(:, :)
          real(wp) :: moved(size(massed))
          integer :: j
@@ -500,7 +503,7 @@ contains
          do j = 1, size(momenta, 2)
             dx = dx - inner_product(size(moved), momenta(:, j), moved)*self%damped(:, j)
          end do
-      end subroutine damp_modes
+      end subroutine apply_modal_damping
 
    end subroutine find_correction
 
@@ -518,7 +521,7 @@ contains
       call step%fit_elements(state)
       associate (structure => state%motion%structure)
          if (allocated(structure%modal_momenta) .and. abs(h - self%factor_step) > equal_step*h) then
-            call damp_modes(structure%massed, structure%modal_momenta)
+            call prepare_modal_damping(structure%massed, structure%modal_momenta)
          end if
          call set_tangent(state%springs%k, step%now%tangent)
          if (allocated(self%initial)) call hold_free()
@@ -530,15 +533,17 @@ contains
 
    contains
 
-      !> Motions by the momenta of the modes, in the elastic structure, times what damping leaves of them.
-      subroutine damp_modes(massed, momenta)
+      !> The columns of `apply_modal_damping`: the motions that the momenta of the modes, taken as forces,
+      !> cause in the elastic structure without damping, each divided as Woodbury's formula has it.
+      subroutine prepare_modal_damping(massed, momenta)
          integer, intent(in) :: massed(:)
          real(wp), intent(in) :: momenta(:, :)
-         real(wp) :: of_damping
+         !> Factor of the damping in the tangent of the step [1/s]
+         real(wp) :: damping_factor
          logical :: regular
          integer :: j
 
-         of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
+         damping_factor = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
          associate (structure => state%motion%structure)
             call set_tangent(structure%initial_stiffness, structure%initial_tangent)
          end associate
@@ -548,10 +553,10 @@ contains
          call self%matrix%solve(self%damped, regular)
          do j = 1, size(momenta, 2)
             associate (motion => self%damped(:, j))
-               motion = motion/(1.0_wp/of_damping + sum(momenta(:, j)*motion(massed)))
+               motion = motion/(1.0_wp/damping_factor + sum(momenta(:, j)*motion(massed)))
             end associate
          end do
-      end subroutine damp_modes
+      end subroutine prepare_modal_damping
 
       !> Tangent of the step on lines of the springs, and its factor.
       subroutine set_tangent(k, tangent)

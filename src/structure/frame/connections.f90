@@ -58,30 +58,32 @@ contains
       end do
    end subroutine check_floors
 
-   !> Nodes that members end in: beams, or columns; those that turn with the node, or that carry the dead
-   !> load.
-   pure function end_nodes(nodes, members, beams, turns, before_load) result(ends)
+   !> The nodes in which members end.
+   pure function end_nodes(nodes, members, beams, unpinned, dead_load) result(ends)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
-      logical, intent(in), optional :: beams, turns, before_load
+      !> Count beams alone if true, columns alone if false; by default both
+      logical, intent(in), optional :: beams
+      !> If present, leave out members that are pinned; those that come after the dead load
+      logical, intent(in), optional :: unpinned, dead_load
       logical :: ends(size(nodes))
       integer :: i
 
       ends = .false.
       do i = 1, size(members)
-         associate (of => members(i)%node)
-            if (any(of == 0)) cycle
-            if (present(turns) .and. members(i)%pinned) cycle
-            if (present(before_load) .and. members(i)%after_dead_load) cycle
+         associate (ends_at => members(i)%node)
+            if (any(ends_at == 0)) cycle
+            if (present(unpinned) .and. members(i)%pinned) cycle
+            if (present(dead_load) .and. members(i)%after_dead_load) cycle
             if (present(beams)) then
-               if (is_beam(nodes(of(1)), nodes(of(2))) .neqv. beams) cycle
+               if (is_beam(nodes(ends_at(1)), nodes(ends_at(2))) .neqv. beams) cycle
             end if
-            ends(of) = .true.
+            ends(ends_at) = .true.
          end associate
       end do
    end function end_nodes
 
-   !> Feet of columns that are left out do not move.
+   !> Hold the base nodes of a grid whose columns are left out: nothing stands on them.
    subroutine hold_idle(nodes, members, grid_nodes)
       type(frame_node), intent(inout) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
@@ -97,21 +99,22 @@ contains
       end do
    end subroutine hold_idle
 
-   !> A node that all members turn freely in does not turn itself.
+   !> Hold the rotation of nodes in which every member is pinned: nothing else would.
    subroutine hold_between_pins(nodes, members)
       type(frame_node), intent(inout) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
       logical :: turned(size(nodes))
       integer :: i
 
-      turned = end_nodes(nodes, members, turns=.true.)
+      turned = end_nodes(nodes, members, unpinned=.true.)
       do i = 1, size(nodes)
          if (turned(i) .or. nodes(i)%ground(3)%rule /= '') cycle
          nodes(i)%held(3) = .true.
       end do
    end subroutine hold_between_pins
 
-   !> Nodes at one place, without a member, or all held; members between the same nodes.
+   !> Refuse nodes at one place, nodes without a member, frames all of whose nodes are held, and members
+   !> between the same nodes.
    subroutine check_geometry(nodes, members, grid_nodes, grid_members, messages)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
@@ -123,7 +126,7 @@ contains
       integer :: i, j
 
       has_member = end_nodes(nodes, members)
-      is_carried = end_nodes(nodes, members, before_load=.true.)
+      is_carried = end_nodes(nodes, members, dead_load=.true.)
       near = same_input*(maxval(nodes%x) - minval(nodes%x) + maxval(nodes%y) - minval(nodes%y))
       do i = 1, size(nodes)
          associate (node => nodes(i))

@@ -470,8 +470,8 @@ contains
       integer :: i
 
       any_node = .false.
-      has_beam = end_nodes(self%node, self%member, beams=.true., turns=.true.)
-      has_column = end_nodes(self%node, self%member, beams=.false., turns=.true.)
+      has_beam = end_nodes(self%node, self%member, beams=.true., unpinned=.true.)
+      has_column = end_nodes(self%node, self%member, beams=.false., unpinned=.true.)
       do i = 1, size(self%node)
          associate (node => self%node(i))
             if (given%panel == 'all') then
