@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -53,6 +54,11 @@ _LONGEST, _LEAST_LOAD = 200.0, 100.0
 _SLIM = 1.4
 #: Beams under load with more bars below than this times those above are told.
 _MORE_BELOW = 1.25
+
+
+def _in_steps(value: float, step: float) -> float:
+    """Return a number of steps nearest to a value, at least one; the larger half-way, by round-off."""
+    return max(math.floor(value / step + 0.5 + 1e-9), 1) * step
 
 
 @dataclass(frozen=True)
@@ -413,7 +419,7 @@ class Grid:
         if not is_drawn(one):
             return load
         step = _STEP * self._area(one) * halves_of(one)[0].concrete.fc
-        return max(round(load / step), 1) * step if load > 0 else 0.0
+        return _in_steps(load, step) if load > 0 else 0.0
 
     def note_on_sections(self) -> None:
         """Tell of sections that seem exchanged: columns like beams, and beams like columns."""
@@ -493,7 +499,7 @@ class Grid:
             given: Any = base, plastic, nodes, self.storeys, clear, pattern.tolist()
             for k, own in zip(levels, line_spans(*given), strict=True):
                 step = _SPAN_STEP * clear[k - 1]
-                low, high = (step * max(round(each / step), 1) for each in own)
+                low, high = (_in_steps(each, step) for each in own)
                 found[i, k] = (low, low), (high, high)
         return found
 
