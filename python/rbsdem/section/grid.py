@@ -57,7 +57,7 @@ _MORE_BELOW = 1.25
 
 
 def _in_steps(value: float, step: float) -> float:
-    """Return a number of steps nearest to a value, at least one; the larger half-way, by round-off."""
+    """Return the steps nearest to a value, at least one; half-way, by round-off, the larger."""
     return max(math.floor(value / step + 0.5 + 1e-9), 1) * step
 
 

@@ -178,7 +178,7 @@ contains
          springs_blocked = 0
          if (count > 0) then
             energy = path%structure%initial_stiffness(:path%moving)*path%rate(:path%moving)**2
-            least = no_rate**2*maxval(energy)
+            least = same_rate**2*maxval(energy)
          end if
          do i = 1, count
             if (energy(blocked(i)) < least) then
