@@ -32,6 +32,7 @@ from typing import NamedTuple
 
 import doubts
 import numpy as np
+from spread_quantiles import weights
 
 from rbsdem import peer
 from rbsdem.curves.envelope import strength_loss
@@ -267,6 +268,8 @@ class Row(NamedTuple):
     peak: float
     drift: float
     inside: tuple[bool, bool]
+    #: Whether a loss at the drift of the test or later agrees with the interval.
+    later: bool
     axial: float
 
 
@@ -284,6 +287,7 @@ def row(test: NewTest) -> Row:
         test.peak / float(np.max(np.abs(force))),
         test.drift_at_loss / (strength_loss(d, force) / s.length),
         (band.peak_force.holds(test.peak), band.drift_at_loss.holds(test.drift_at_loss)),
+        test.drift_at_loss <= band.drift_at_loss.upper,
         test.drift_at_axial_failure / axial,
     )
 
@@ -326,7 +330,16 @@ def new_table(rows: list[Row]) -> list[str]:
             f"| {_cell([r.drift for r in own])} | {held[1]:.2f} | {np.mean(lost):.2f}, {len(lost)} "
             f"| {_cell(axial)}, {len(axial)} |"
         )
-    return lines
+    held = np.array([r.inside[1] for r in rows])
+    bound = np.array([r.inside[1] if r.test.surely_lost else r.later for r in rows])
+    weight = weights(np.array([r.test.series for r in rows]))
+    shares = [f"{np.mean(v):.2f}, {np.average(v, weights=weight):.2f}" for v in (held, bound)]
+    return [
+        *lines,
+        "",
+        "interval of the drift, every test alike, and weighted as where intervals are set: "
+        f"{shares[0]}; where not surely lost, a lower bound: {shares[1]}",
+    ]
 
 
 def one_push(rows: list[Row]) -> list[str]:
