@@ -443,6 +443,31 @@ def test_a_member_of_a_frame_is_removed_and_comes_back(frame):
     page.wait(lambda: page.all("#frame .removed"))
 
 
+def test_a_building_in_plan_shows_one_frame_at_a_time(frame):
+    page = frame
+    page.type("#f-frame-storeys", "3200")
+    page.one("#setinplan").click()
+    page.wait(lambda: len(page.all("#plan .member")) == 5)
+    page.wait(lambda: not page.old() and page.text("#attarget"))
+    page.wait(lambda: len(page.all("#frame .member")) == 5)
+    along_x = page.text("#figures")
+    line = page.one('#plan [data-name="y-2"]')
+    page.driver.execute_script("arguments[0].focus()", line)
+    line.send_keys(Keys.ENTER)
+    page.wait(lambda: len(page.all("#frame .member")) == 3)
+    assert page.text("#figures").split("roof drift at")[0] == along_x.split("roof drift at")[0]
+    # A beam of this line alone is removed; the case says where.
+    beam = page.one('#frame [data-name="B-1-1"]')
+    page.driver.execute_script("arguments[0].focus()", beam)
+    beam.send_keys(Keys.DELETE)
+    page.wait(lambda: page.all("#frame .removed"))
+    keys = ("along", "bay", "of_line", "storey", "kind")
+    cells = [page.value(f"#f-beam_of-3-{key}") for key in keys]
+    assert cells == ["y", "1", "2", "1", "none"]
+    page.one("#undo").click()
+    page.wait(lambda: not page.all("#frame .removed"))
+
+
 def test_a_building_is_drawn_by_its_fields(frame):
     """Outer columns of another concrete, rows at the sides, facades, a wall, masonry, a lap."""
     page = frame

@@ -141,6 +141,31 @@ def test_a_building_is_that_of_its_case_file(text, tmp_path):
     assert not re.search(r"\bkip\b", report)
 
 
+def test_a_building_in_plan_is_that_of_its_case_file(tmp_path):
+    kind = rbsdem.FrameMember(3e10, 0.16, 2e-3, yield_moment=2e5, hardening=0.02)
+    house = rbsdem.Building.grid(
+        [3.0], [6.0, 4.0], [5.0], columns=kind, beams_x=kind, beams_y=kind, floor_load=6e3,
+        mass="from_loads", direction=30.0,
+    )  # fmt: skip
+    text = house.to_namelist() + "&loading drive = 'displacement', values = 0.05 /\n"
+    page = Answers()
+    state = page.open({"text": text}, None)["state"]
+    answer = page.loops({"state": state}, None)["frame"]
+    push = rbsdem.pushover(house, displacement=0.05)
+    assert list(answer["frames"]) == ["x-1", "x-2", "y-1", "y-2", "y-3"]
+    assert answer["base_shear"][-1] == pytest.approx(push.base_shear[-1], rel=1e-4)
+    assert answer["period"] == rbsdem.modes(house, 1).period[0]
+    roof = [push.floor_x[-1, -1], push.floor_y[-1, -1], push.floor_rotation[-1, -1]]
+    assert answer["plan"]["roof"][-1] == pytest.approx(roof, abs=1e-6 * max(map(abs, roof)))
+    assert answer["plan"]["lines"][-1] == {"name": "y-3", "from": [10.0, 0.0], "to": [10.0, 5.0]}
+    frame = push.frame("y-3")
+    parts = frame.frame.parts
+    moved = answer["frames"]["y-3"]["moved"][-1][parts.members.index("B-1-1")]
+    assert moved[0][0] == pytest.approx(frame.x[-1, parts.nodes.index("N-1-1")], rel=1e-4)
+    told = answer["frames"]["y-3"]["events"]
+    assert [one["member"] for one in told] == [event.member for event in frame.events]
+
+
 def test_what_the_page_has_no_field_for_stays_in_its_case():
     """A frame of the page with rigid ends and a beam in the loft that it cannot draw."""
     page = Answers()

@@ -384,6 +384,11 @@ REFUSED = [
     (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
     (lambda f: rbsdem.Building([]), "it has no frames"),
     (lambda f: rbsdem.Building([(f, 0.0)]), "must be a tuple"),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], centres=(1.0, 2.0, 3.0)), "centres has 3 numbers"),
+    (
+        lambda f: rbsdem.pushover(rbsdem.Building([(f, 0.0, 0.0)]), drift=1e-4).drift_at((1.0,)),
+        "must be x and y",
+    ),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a:b"]), "is no name of a frame"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a", "b"]), "2 names for 1 frames"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], direction=90.0), "has a part along y"),
@@ -500,6 +505,7 @@ TEE = TeeSection(0.3, 0.5, C.concrete, flange_width=0.9, flange_thickness=0.1)
 GRIDS = [
     ({"walls": {("x", 9, 1): None}}, "line"),
     ({"walls": {(1, 1): None}}, "must be .direction, line, place."),
+    ({"walls": {("x", 1, 1): None}}, "walls: .*WallSection"),
     ({"eccentricity": (5.0, 5.0)}, "5 per cent is 0.05"),
     ({"columns": {(4, 1, 0): ELASTIC}}, "columns: line_x = 4, but the building has 3"),
     ({"beams_x": {(1, 1): ELASTIC}}, "must be three numbers"),

@@ -131,14 +131,16 @@ class Target(Tabular):
         if not isinstance(push, BuildingResult):
             return {}
         building = push.building
-        found, along, share = _moved_along(building)
-        size = share * np.array([self.spectrum.sa(period) for period in found.period])
-        size = size / found.omega**2
-        roof = np.stack([one[-1] for one in (found.floor_x, found.floor_y, found.floor_rotation)])
+        modal, along, share = _moved_along(building)
+        size = share * np.array([self.spectrum.sa(period) for period in modal.period])
+        size = size / modal.omega**2
+        roof = np.stack(
+            [motion[-1] for motion in (modal.floor_x, modal.floor_y, modal.floor_rotation)]
+        )
         rows = rows_at(push, self)[1]
         moved = [push.floor_x[:, -1], push.floor_y[:, -1], push.floor_rotation[:, -1]]
-        pushed = np.array([between(rows, one - one[0])[0, 0] for one in moved])
-        ratio = np.divide.outer(found.omega, found.omega)
+        pushed = np.array([between(rows, motion - motion[0])[0, 0] for motion in moved])
+        ratio = np.divide.outer(modal.omega, modal.omega)
         close = 8.0 * _DAMPING**2 * (1.0 + ratio) * ratio**1.5
         close /= (1.0 - ratio**2) ** 2 + 4.0 * _DAMPING**2 * ratio * (1.0 + ratio) ** 2
 
@@ -300,19 +302,19 @@ def _moved_along(building: Building) -> tuple[BuildingModes, Array, Array]:
 
     The shares are those of the modes in a motion of the ground along this direction.
     """
-    found = modes(building, 3 * len(building.storey_heights))
+    modal = modes(building, 3 * len(building.storey_heights))
     masses = building.plan_mass.copy()
     for node in building.nodes:
         if node.floor:
             masses[node.floor - 1] += node.mass
     c, s = cosine_sine(building.direction)
-    along = c * found.floor_x + s * found.floor_y
-    return found, along, masses @ along
+    along = c * modal.floor_x + s * modal.floor_y
+    return modal, along, masses @ along
 
 
 def _capacity_of_building(push: BuildingResult) -> Capacity:
     building = push.building
-    found, along, shares = _moved_along(building)
+    modal, along, shares = _moved_along(building)
     if not shares.any():
         raise InputError("target: the building has no mass along the push; give its floors some")
     first = int(np.abs(shares).argmax())
@@ -321,7 +323,7 @@ def _capacity_of_building(push: BuildingResult) -> Capacity:
     side = math.copysign(1.0, push.displacement[-1] - push.displacement[0])
     u = side * (push.displacement - push.displacement[0])
     v = side * (push.base_shear - push.base_shear[0])
-    slope = _pdelta_slope(building, found.x[:, first] / phi, gamma)
+    slope = _pdelta_slope(building, modal.x[:, first] / phi, gamma)
     total = float(np.sum(building.plan_mass) + sum(one.mass for one in building.nodes if one.floor))
     storeys = len(building.storey_heights)
     more = {"pdelta_slope": slope, "first_yield": _first_yield(push, side)}

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.run.accuracy import ErrorEstimate, Errors
@@ -114,7 +115,10 @@ class BuildingResult(Result):
 
     def moved(self, place: Sequence[float]) -> Array:
         """Return the displacement of a place in plan on all floors, shape (rows, floors, 2) [m]."""
-        x, y = place
+        at = _arguments.finite_vector(place, "building: place")
+        if at.size != 2:
+            raise InputError(f"building: place = {_arguments.shown(place)} must be x and y [m]")
+        x, y = at
         centre = self.building.centres
         u = self.floor_x - self.floor_rotation * (y - centre[:, 1])
         v = self.floor_y + self.floor_rotation * (x - centre[:, 0])

@@ -454,7 +454,11 @@ def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
 
 def _by_floor(given: Any, floors: int, name: str, width: int = 1) -> Array:
     """Return numbers or pairs for each floor, shape (floors, width)."""
-    values = np.asarray(given, float)
+    values = _arguments.vector(given, f"building: {name}", shape="any")
+    if values.size % width:
+        raise InputError(
+            f"building: {name} has {values.size} numbers; give two, or two for each floor"
+        )
     try:
         values = np.broadcast_to(values.reshape(-1, width), (floors, width))
     except ValueError:

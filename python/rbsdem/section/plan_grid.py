@@ -94,49 +94,53 @@ class PlanDrawing:
     base: Literal["fixed", "pinned"] = "fixed"
 
     @classmethod
-    def checked(cls, **given: Any) -> PlanDrawing:
+    def checked(cls, **drawn: Any) -> PlanDrawing:
         """Return the drawing of the arguments of `rbsdem.Building.grid`, which are checked."""
         sizes = {}
         for name in ("storeys", "bays_x", "bays_y"):
-            values = _arguments.finite_vector(given[name], f"building: {name}", shape="1 or m")
+            values = _arguments.finite_vector(drawn[name], f"building: {name}", shape="1 or m")
             if not values.size or (values <= 0.0).any():
                 raise InputError(
-                    f"building: {name} = {_arguments.shown(given[name])} must be lengths above 0"
+                    f"building: {name} = {_arguments.shown(drawn[name])} must be lengths above 0"
                 )
             sizes[name] = tuple(values.tolist())
         lines = len(sizes["bays_x"]) + 1, len(sizes["bays_y"]) + 1
         floors = len(sizes["storeys"])
-        made = given | sizes
-        made["columns"] = cells_of(given["columns"], "columns", FrameMember, *lines, halves=Section)
+        made = drawn | sizes
+        made["columns"] = cells_of(drawn["columns"], "columns", FrameMember, *lines, halves=Section)
         _check_places("columns", made["columns"], ("line_x", "line_y", "storey"), (*lines, floors))
         for along, bays, across in (("x", lines[0] - 1, lines[1]), ("y", lines[1] - 1, lines[0])):
             kinds: Any = (("beams", FrameMember, Section), ("infills", Infill, None))
             for name, kind, halves in kinds:
-                own = f"{name}_{along}"
-                made[own] = cells_of(given[own], own, kind, bays, across, halves=halves)
-                _check_places(own, made[own], ("bay", "line", "storey"), (bays, across, floors))
-        made["walls"] = dict(_walls(given["walls"], lines, floors))
+                argument = f"{name}_{along}"
+                made[argument] = cells_of(
+                    drawn[argument], argument, kind, bays, across, halves=halves
+                )
+                _check_places(
+                    argument, made[argument], ("bay", "line", "storey"), (bays, across, floors)
+                )
+        made["walls"] = dict(_walls(drawn["walls"], lines, floors))
         for name, unit in (("floor_load", "N/m2"), ("live_load", "N/m2"), ("edge_load", "N/m")):
-            made[name] = _by_floor(given[name], floors, name)
+            made[name] = _by_floor(drawn[name], floors, name)
             told_of_small(f"building: {name}", made[name], unit, f"6 k{unit} is 6e3")
-        mass = given["floor_mass"]
+        mass = drawn["floor_mass"]
         made["floor_mass"] = () if mass is None else _by_floor(mass, floors, "floor_mass")
-        if given["mass"] is not None:
-            _arguments.choice(given["mass"], "building: mass", ("from_loads",))
+        if drawn["mass"] is not None:
+            _arguments.choice(drawn["mass"], "building: mass", ("from_loads",))
             if mass is not None:
                 raise InputError("building: mass and floor_mass are given; give one of them")
-        off = _arguments.finite_vector(given["eccentricity"], "building: eccentricity")
+        off = _arguments.finite_vector(drawn["eccentricity"], "building: eccentricity")
         if off.size != 2 or np.abs(off).max() >= 0.5:
             raise InputError(
-                f"building: eccentricity = {_arguments.shown(given['eccentricity'])} must be two "
+                f"building: eccentricity = {_arguments.shown(drawn['eccentricity'])} must be two "
                 "parts of the lengths along x and y, below a half: 5 per cent is 0.05"
             )
         made["eccentricity"] = tuple(off.tolist())
         made["live_share"] = _arguments.number(
-            given["live_share"], "building: live_share", least=0.0, most=1.0
+            drawn["live_share"], "building: live_share", least=0.0, most=1.0
         )
-        made["self_weight"] = _arguments.boolean(given["self_weight"], "building: self_weight")
-        _arguments.choice(given["base"], "building: base", ("fixed", "pinned"))
+        made["self_weight"] = _arguments.boolean(drawn["self_weight"], "building: self_weight")
+        _arguments.choice(drawn["base"], "building: base", ("fixed", "pinned"))
         return cls(**made)
 
     @property
@@ -192,9 +196,9 @@ class PlanDrawing:
 
     def weights(self) -> Weights:
         """Return the loads of beams and nodes, and the masses that they are of."""
-        found = Weights(self)
+        weights = Weights(self)
         for k, (dead, live) in enumerate(zip(self.floor_load, self.live_load, strict=True), 1):
-            found.put_panels(k, dead + self.live_share * live)
+            weights.put_panels(k, dead + self.live_share * live)
         for line in self.lines:
             columns, beams, _ = self.cells(line)
             outer = line.number in (1, len(self.bays("y" if line.along == "x" else "x")) + 1)
@@ -202,17 +206,17 @@ class PlanDrawing:
                 load = self.edge_load[k - 1] if outer and beam is not None else 0.0
                 if self.self_weight:
                     load += CONCRETE_WEIGHT * _area(beam)
-                found.put_beam(line, i, k, load)
+                weights.put_beam(line, i, k, load)
             for (i, k), column in columns.items() if self.self_weight else ():
                 # A column of two lines weighs in that along x.
                 if line.along == "x" or isinstance(column, WallSection):
                     half = 0.5 * CONCRETE_WEIGHT * _area(column) * self.storeys[k - 1]
-                    found.put_column(line, i, k, half)
-        return found
+                    weights.put_column(line, i, k, half)
+        return weights
 
     def groups(self, of_building: dict[str, Any]) -> _core.Statement:
         """Return the groups of a case file, with the keys of the building in `&frame`."""
-        walls = [one for several in self.walls.values() for one in several]
+        walls = [wall for storeys in self.walls.values() for wall in storeys]
         placed = [*self.columns.values(), *self.beams_x.values(), *self.beams_y.values(), *walls]
         drawn, sections, hoops = drawings_of(placed, self.panel_hoops)
         grid: dict[str, Any] = {
@@ -221,7 +225,7 @@ class PlanDrawing:
             "bays_y": self.bays_y,
         }
         usual = {"ends": None, "base": "fixed", "mass": None, "self_weight": False}
-        grid |= {name: own for name, no in usual.items() if (own := getattr(self, name)) != no}
+        grid |= {name: value for name, no in usual.items() if (value := getattr(self, name)) != no}
         grid |= {
             f"eccentricity_{a}": e or None for a, e in zip("xy", self.eccentricity, strict=True)
         }
@@ -237,11 +241,11 @@ class PlanDrawing:
         }
         loads["live_floor_load"] = self.live_load
         for i in range(len(self.storeys)):
-            own = {
+            of_floor = {
                 name: (several[i] or None) if several else None for name, several in loads.items()
             }
-            parts.append(("floor", {"floor": i + 1} | own))
-        names = names_of([one for one in placed if isinstance(one, FrameMember)])
+            parts.append(("floor", {"floor": i + 1} | of_floor))
+        names = names_of([kind for kind in placed if isinstance(kind, FrameMember)])
         parts += groups_of_kinds(names)
 
         def put(group: str, cell: Any, **place: Any) -> None:
@@ -276,33 +280,33 @@ class PlanDrawing:
         cls : type
             `rbsdem.Building`.
         more : mapping
-            Its other arguments.
+            Its other drawn.
         """
         weights = self.weights()
         cells = {line: self.cells(line) for line in self.lines}
         # Posts alone are no frame.
         cells = {
-            line: own
-            for line, own in cells.items()
-            if any(own[1].values())
-            or any(one is not None and not _is_post(one) for one in own[0].values())
+            line: members
+            for line, members in cells.items()
+            if any(members[1].values())
+            or any(kind is not None and not _is_post(kind) for kind in members[0].values())
         }
         places = [(Line("y", i), y) for i, y in enumerate(self.places("x"), 1)]
         places += [(Line("x", j), -y) for j, y in enumerate(self.places("y"), 1)]
         arms = {line: float(arm) for line, arm in places}
         masses = weights.masses(self.floor_mass, self.mass)
-        given: dict[str, Any] = {"names": [line.name for line in cells]}
-        given |= dict(zip(("floor_mass", "centres", "inertia"), masses, strict=True))
+        of_building: dict[str, Any] = {"names": [line.name for line in cells]}
+        of_building |= dict(zip(("floor_mass", "centres", "inertia"), masses, strict=True))
 
         def assembled(drawn: bool, **about: Any) -> Any:
             frames = []
-            for line, own in cells.items():
+            for line, members in cells.items():
                 try:
-                    frame = self._frame(line, own, weights, axial if drawn else None)
+                    frame = self._frame(line, members, weights, axial if drawn else None)
                 except InputError as error:
                     raise error.of(f"frame {line.name}") from None
                 frames.append((frame, 90.0 if line.along == "y" else 0.0, arms[line], 0.0))
-            return cls(frames, **given | about)
+            return cls(frames, **of_building | about)
 
         axial: dict[str, float] = {}
         with notes_off():
@@ -323,7 +327,8 @@ class PlanDrawing:
         more: dict[str, Any] = {"ends": self.ends, "panel_hoops": self.panel_hoops}
         if axial is None:
             columns, beams = (
-                {at: elastic_kind(one) for at, one in own.items()} for own in (columns, beams)
+                {at: elastic_kind(kind) for at, kind in placed.items()}
+                for placed in (columns, beams)
             )
             more = {}
         else:
@@ -410,8 +415,8 @@ class Weights:
         at = self._place(line, self.drawing.places(line.along)[place - 1])
         for floor in (storey, storey - 1) if half else ():
             if floor > 0:
-                own = self.nodes[line]
-                own[place, floor] = own.get((place, floor), 0.0) + half
+                loads = self.nodes[line]
+                loads[place, floor] = loads.get((place, floor), 0.0) + half
                 self.of_floor[floor - 1].append((half, *at, 0.0))
 
     def _place(self, line: Line, along: float) -> tuple[float, float]:
@@ -419,7 +424,7 @@ class Weights:
         arm = float(self.drawing.places(across)[line.number - 1])  # type: ignore[arg-type]
         return (float(along), arm) if line.along == "x" else (arm, float(along))
 
-    def masses(self, given: tuple[float, ...], rule: str | None) -> tuple[Array, Array, Array]:
+    def masses(self, floor_mass: tuple[float, ...], rule: str | None) -> tuple[Array, Array, Array]:
         """Return masses, centres in plan and rotary inertia of the floors.
 
         Of loads the masses are where these are; masses that are given are spread as the loads, or
@@ -427,25 +432,31 @@ class Weights:
         """
         d = self.drawing
         lengths = np.array([sum(d.bays_x), sum(d.bays_y)])
-        found = []
-        for i, own in enumerate(self.of_floor):
-            weight, x, y, second = np.array(own or [(0.0, 0.0, 0.0, 0.0)]).T
+        rows = []
+        for i, weights in enumerate(self.of_floor):
+            weight, x, y, second = np.array(weights or [(0.0, 0.0, 0.0, 0.0)]).T
             total, centre, spread = float(weight.sum()), 0.5 * lengths, (lengths**2).sum() / 12.0
             if total > 0.0:
                 centre = np.array([weight @ x, weight @ y]) / total
                 spread = weight @ (second + (x - centre[0]) ** 2 + (y - centre[1]) ** 2) / total
-            mass = total / STANDARD_GRAVITY if rule is not None else given[i] if given else 0.0
-            found.append((mass, *(centre + d.eccentricity * lengths), mass * spread))
-        table = np.array(found)
+            mass = (
+                total / STANDARD_GRAVITY
+                if rule is not None
+                else floor_mass[i]
+                if floor_mass
+                else 0.0
+            )
+            rows.append((mass, *(centre + d.eccentricity * lengths), mass * spread))
+        table = np.array(rows)
         return table[:, 0], table[:, 1:3], table[:, 3]
 
 
 def _walls(
-    given: Any, lines: tuple[int, int], floors: int
+    walls: Any, lines: tuple[int, int], floors: int
 ) -> Iterator[tuple[tuple[Along, int, int], tuple[WallSection, ...]]]:
     """Yield the sections of walls by direction, line and place; one wall stands in a place."""
     taken: dict[tuple[int, int], Any] = {}
-    for key, one in (given or {}).items():
+    for key, sections in (walls or {}).items():
         if not (isinstance(key, tuple) and len(key) == 3 and key[0] in ("x", "y")):
             raise InputError(
                 f"building: walls: {_arguments.shown(key)} must be (direction, line, place), as "
@@ -455,7 +466,11 @@ def _walls(
         most = lines[::-1] if along == "x" else lines
         number = _arguments.integer(line, f"building: walls: {key}: line", least=1, most=most[0])
         at = _arguments.integer(place, f"building: walls: {key}: place", least=1, most=most[1])
-        each = [one] if isinstance(one, WallSection) else list(one)
+        each = (
+            [sections]
+            if isinstance(sections, WallSection)
+            else _arguments.several(sections, f"building: walls: {key}", "WallSection")
+        )
         for section in each:
             _arguments.instance(section, f"building: walls: {key}", WallSection)
         if len(each) not in (1, floors):
@@ -484,21 +499,21 @@ def _check_places(name: str, cells: Cells, words: tuple[str, ...], most: tuple[i
                 )
 
 
-def _by_floor(given: Any, floors: int, name: str) -> tuple[float, ...]:
-    values = _arguments.finite_vector(given, f"building: {name}", shape="1 or m")
+def _by_floor(numbers: Any, floors: int, name: str) -> tuple[float, ...]:
+    values = _arguments.finite_vector(numbers, f"building: {name}", shape="1 or m")
     if values.size not in (1, floors) or (values < 0.0).any():
         raise InputError(
-            f"building: {name} = {_arguments.shown(given)} must be a number, or one for each of "
+            f"building: {name} = {_arguments.shown(numbers)} must be a number, or one for each of "
             f"{floors} floors, not below 0"
         )
     return tuple(np.broadcast_to(values, floors).tolist())
 
 
-def _is_post(one: Any) -> bool:
-    return isinstance(one, FrameMember) and one.ends == "pinned"
+def _is_post(kind: Any) -> bool:
+    return isinstance(kind, FrameMember) and kind.ends == "pinned"
 
 
-def _area(one: Any) -> float:
+def _area(member: Any) -> float:
     """Return the area of the mean section of a member that is drawn; 0 of one by hand [m2]."""
-    kind = elastic_kind(one)
-    return float(kind.area) if kind is not None and is_drawn(one) else 0.0
+    kind = elastic_kind(member)
+    return float(kind.area) if kind is not None and is_drawn(member) else 0.0

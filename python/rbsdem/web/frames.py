@@ -15,6 +15,7 @@ from rbsdem.errors import RbsdemError, SolveError
 from rbsdem.many.judgement import Judgement, judge, response
 from rbsdem.output.frames import deformed, spring_rotations
 from rbsdem.run.analysis import modes
+from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.case import Case
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.web.state import Faults, number, numbers, shown_rows
@@ -30,7 +31,7 @@ def is_push(case: Case) -> bool:
     return case.displacement is not None and len(np.unique(case.displacement[1:])) <= 1
 
 
-def solved(case: Case, faults: Faults) -> tuple[FrameResult | None, str]:
+def solved(case: Case, faults: Faults) -> tuple[FrameResult | BuildingResult | None, str]:
     """Return the response of a frame and why it ended early; what is wrong is added to the faults.
 
     One displacement is a push-over to there; several are a path.
@@ -53,16 +54,46 @@ def solved(case: Case, faults: Faults) -> tuple[FrameResult | None, str]:
     return None, ""
 
 
-def to_json(result: FrameResult) -> dict[str, Any]:
-    """Return a response as the page draws it: curve, pictures on the way, hinges."""
+#: What the page is told of each frame of a building.
+_OF_ONE_FRAME = (
+    *("storey_drift", "storey_shear", "peak", "members", "still", "moved", "forces", "events"),
+)
+
+
+def to_json(result: FrameResult | BuildingResult) -> dict[str, Any]:
+    """Return a response as the page draws it: curve, pictures on the way, hinges.
+
+    That of a building has its plan, and its frames by their names.
+    """
+    if not isinstance(result, BuildingResult):
+        return _of_frame(result, result)
+    made = {name: _of_frame(frame, result) for name, frame in result.frames.items()}
+    whole = dict(next(iter(made.values())))
+    frames = {name: {key: one[key] for key in _OF_ONE_FRAME} for name, one in made.items()}
+    pictures = np.searchsorted(result.time, np.array(whole["time"])[whole["pictures"]] - 1e-9)
+    roof = (result.floor_x, result.floor_y, result.floor_rotation)
+    lines = []
+    for plane in result.building.planes:
+        ends = plane.places(np.array([plane.frame.parts.x.min(), plane.frame.parts.x.max()]))
+        lines.append({"name": plane.name, "from": ends[0].tolist(), "to": ends[1].tolist()})
+    plan = {
+        "lines": lines,
+        "centre": result.building.centres[-1].tolist(),
+        "roof": rounded(np.column_stack([one[pictures, -1] for one in roof]), 6),
+    }
+    return whole | {"frames": frames, "plan": plan}
+
+
+def _of_frame(result: FrameResult, whole: FrameResult | BuildingResult) -> dict[str, Any]:
+    """Return the response of a frame, with base shear, height and period of what it is part of."""
     frame, parts = result.frame, result.frame.parts
-    whole = np.arange(result.time.size)
-    pictures = whole if result.dynamic else np.flatnonzero(result.time == np.rint(result.time))
+    every = np.arange(result.time.size)
+    pictures = every if result.dynamic else np.flatnonzero(result.time == np.rint(result.time))
     # A push-over has rows at its events too.
-    many = 3 * _PICTURES if pictures.size == whole.size else _PICTURES
+    many = 3 * _PICTURES if pictures.size == every.size else _PICTURES
     if pictures.size > many:
         pictures = pictures[np.linspace(0, pictures.size - 1, many).astype(int)]
-    rows = np.union1d(shown_rows(result.displacement, result.base_shear, _ROWS), pictures)
+    rows = np.union1d(shown_rows(result.displacement, whole.base_shear, _ROWS), pictures)
     nodes = np.column_stack((parts.x, parts.y))
     moved_nodes = nodes + np.stack((result.x[pictures], result.y[pictures]), axis=-1)
     still: list[Array] = []
@@ -74,7 +105,7 @@ def to_json(result: FrameResult) -> dict[str, Any]:
             line = deformed(result, one, shown, scale, turns, _SHARES)
             found.append(np.concatenate((at[:, [one.start]], line, at[:, [one.end]]), axis=1))
     with unwarned(Warning):
-        period = float(modes(frame, 1).period[0]) if parts.mass > 0.0 else None
+        period = float(modes(whole.structure, 1).period[0]) if parts.mass > 0.0 else None
     ends = result.moment_from[pictures], result.moment_to[pictures]
     shears = [
         np.maximum(*(np.abs(one.shear(ends[0][:, i], ends[1][:, i], end)) for end in (0.0, 1.0)))
@@ -84,17 +115,17 @@ def to_json(result: FrameResult) -> dict[str, Any]:
     return {
         "status": result.summary["status"],
         "dynamic": result.dynamic,
-        "height": frame.height,
+        "height": whole.structure.height,
         "weight": parts.mass * STANDARD_GRAVITY,
         "period": period,
         "time": numbers(result.time[rows]),
         "displacement": rounded(result.displacement[rows]),
-        "base_shear": rounded(result.base_shear[rows]),
+        "base_shear": rounded(whole.base_shear[rows]),
         "storey_drift": rounded(result.storey_drift[rows]),
         "storey_shear": rounded(result.storey_shear[rows]),
         "peak": {
-            "base_shear": number(float(np.abs(result.base_shear).max())),
-            "drift": number(float(np.abs(result.displacement).max()) / frame.height),
+            "base_shear": number(float(np.abs(whole.base_shear).max())),
+            "drift": number(float(np.abs(result.displacement).max()) / whole.structure.height),
             "storey_drift": numbers(np.abs(result.storey_drift).max(axis=0)),
             "storey_shear": numbers(np.abs(result.storey_shear).max(axis=0)),
             "residual": number(float(np.abs(result.residual_drift).max())),
@@ -106,14 +137,19 @@ def to_json(result: FrameResult) -> dict[str, Any]:
         "forces": rounded(np.stack(forces, axis=-1), 4),
         "events": [
             {name: getattr(event, name) for name in ("member", "end", "group", "name")}
-            | {name: number(getattr(event, name)) for name in ("time", "drift", "force")}
+            | {name: number(getattr(event, name)) for name in ("time", "drift")}
+            | {"force": number(event.force if whole is result else _shear_at(whole, event.time))}
             | {"dead": bool(event.time <= result.time[0])}
             for event in result.events
         ],
     }
 
 
-def judged(case: Case, result: FrameResult) -> Judgement:
+def _shear_at(result: BuildingResult | FrameResult, time: float) -> float:
+    return float(np.interp(time, result.time, result.base_shear))
+
+
+def judged(case: Case, result: FrameResult | BuildingResult) -> Judgement:
     """Return what a case asks for beside its response, as `rbsdem.codes.judge` finds it.
 
     A target displacement is that of a push-over; without one members are judged by the envelope.
@@ -123,7 +159,7 @@ def judged(case: Case, result: FrameResult) -> Judgement:
     return judge(replace(case, records={}), result=result)
 
 
-def checked(case: Case, result: FrameResult, faults: Faults) -> dict[str, Any]:
+def checked(case: Case, result: FrameResult | BuildingResult, faults: Faults) -> dict[str, Any]:
     """Return the outcome of `judged` as the page draws it."""
     made = None
     try:

@@ -410,7 +410,7 @@ def case_of(
 def _check_sizes(groups: Groups, faults: Faults) -> None:
     """Refuse what a page is too small for."""
     for i, (name, values) in enumerate(groups):
-        for key in ("storeys", "bays") if name == "frame" else ():
+        for key in ("storeys", "bays", "bays_x", "bays_y") if name == "frame" else ():
             several = values.get(key)
             if isinstance(several, list) and len(several) > _MOST_CELLS:
                 faults.add(f"{i}.{key}", f"give at most {_MOST_CELLS} of them")

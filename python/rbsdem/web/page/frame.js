@@ -13,6 +13,14 @@ const GRID = [
   { path: "frame.bays", label: "Widths of the bays", dimension: "length", list: true },
   { path: "frame.base", label: "Base of the columns", choices: [["fixed", "fixed"], ["pinned", "pinned"]] },
 ];
+const IN_PLAN = [
+  GRID[0],
+  { path: "frame.bays_x", label: "Widths of the bays along x", dimension: "length", list: true },
+  { path: "frame.bays_y", label: "Widths of the bays along y", dimension: "length", list: true },
+  GRID[2],
+  { path: "frame.direction", label: "Direction of the push, from x towards y, in degrees", dimension: "number", step: 15, optional: "0" },
+  ...["x", "y"].map(along => ({ path: `frame.eccentricity_${along}`, label: `Centre of mass off along ${along}`, dimension: "share", step: 0.05, optional: "0" })),
+];
 const LOADS = [
   { path: "frame.live_share", label: "Share of the live load that acts", dimension: "share", step: 0.05, optional: "30" },
   { path: "frame.self_weight", label: "Weight of the members", choices: [[false, "in the dead load"], [true, "25 kN/m³"]] },
@@ -43,18 +51,27 @@ const INFILL = [
   { key: "name", label: "name", text: true }, { key: "thickness", label: "thick", dimension: "length", step: 0.01 }, { key: "fm", label: "f_m", dimension: "stress", step: 1e6 },
   { ...load("opening_length", "opening", "length", 0.1), optional: "–" }, { ...load("opening_height", "its height", "length", 0.1), optional: "–" },
 ];
-const PLACED = fieldsOf(["line", "bay", "storey", "floor", "kind", "kind_to", "lines", "bays"].flatMap(key => ["column_of", "beam_of", "infill_of", "node_load", "floor"].map(name => ({ path: `${name}.${key}`, label: key, choices: [] }))));
-const FIELDS = [GRID, LOADS, DEMAND, [PATTERN, NAME], LOADING, SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path)].flat();
+const PLACED = fieldsOf(["line", "bay", "storey", "floor", "kind", "kind_to", "lines", "bays", "line_x", "line_y", "along", "of_line"].flatMap(key => ["column_of", "beam_of", "infill_of", "node_load", "floor"].map(name => ({ path: `${name}.${key}`, label: key, choices: [] }))));
+const FIELDS = [GRID, IN_PLAN, LOADS, DEMAND, [PATTERN, NAME], LOADING, SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path)].flat();
 const KNOWN = { ...PLACED, ...fieldsOf([...FIELDS, ...SECTION_KEYS, ...INFILL.map(cell => ({ ...cell, path: `infill.${cell.key}` })),
-  { path: "floor.dead_load", label: "Dead load", dimension: "line" }, { path: "floor.live_load", label: "Live load", dimension: "line" }, { path: "node_load.load", label: "Load", dimension: "force" }]) };
+  { path: "floor.dead_load", label: "Dead load", dimension: "line" }, { path: "floor.live_load", label: "Live load", dimension: "line" }, { path: "floor.edge_load", label: "Facades", dimension: "line" },
+  { path: "floor.floor_load", label: "Dead load", dimension: "area" }, { path: "floor.live_floor_load", label: "Live load", dimension: "area" }, { path: "node_load.load", label: "Load", dimension: "force" }]) };
 // Hinges by the furthest that they have reached, and ends by the levels of the code that they exceed.
 const STATES = [["cracking", "cracked", "cracked"], ["yield", "yielded", "yielded"], ["cap", "beyond", "failed or beyond their cap"], ["shear_failure", "beyond"], ["lost", "beyond"]];
 const EXCEEDED = ["within", "yielded", "far", "beyond"];
 
-// The name of the drawing that is shown, "" for the building; the member that was chosen; whether levels are shown.
-let shownDrawing = "", chosen = "", byLevels = false, timer = null, scales = {}, timeFigure = null;
+// The name of the drawing that is shown, "" for the building; the member that was chosen; whether levels are shown; the frame of a plan.
+let shownDrawing = "", line = "x-1", chosen = "", byLevels = false, timer = null, scales = {}, timeFigure = null;
 
-const answer = () => frameView.stood.loops?.frame;
+// Of a building in plan the response is that of the frame which is shown.
+function answer() {
+  const found = frameView.stood.loops?.frame;
+  if (!found?.frames) return found;
+  if (!found.frames[line]) [line] = Object.keys(found.frames);
+  return { ...found, ...found.frames[line] };
+}
+// Ends beside their limits, of the frame that is shown.
+const endsShown = () => (checks()?.ends ?? []).filter(({ member }) => !inPlan() || member.startsWith(`${line}:`)).map(one => ({ ...one, member: one.member.split(":").at(-1) }));
 const checks = () => beside("checks", frameView);
 const groups = () => frameView.state.cases[0];
 const drawings = () => drawingsOf(groups()).map(own => [own[0][1].name ?? "", own]);
@@ -78,24 +95,32 @@ export const frameLanes = [{ lane: "checks", delay: 60, show: showChecks }];
 
 // ---- the grid --------------------------------------------------------------------------------------
 
+const inPlan = (frame = valuesOf(groups(), "frame")) => "bays_x" in frame;
+const baysKey = frame => inPlan(frame) ? `bays_${line[0]}` : "bays";
 const sizes = key => { const found = valuesOf(groups(), "frame")[key]; return Array.isArray(found) ? found : [found ?? 0]; };
 
 // Whether a group of a grid is of a place, and which of those that are so comes last: it counts.
-function fits({ storey = 0, ...values }, key, at, level, lines) {
-  const word = values[`${key}s`] ?? "all", number = values[key] ?? 0, outer = at === 1 || at === lines;
-  return (storey === 0 || storey === level) && (word === "all" ? number === 0 || number === at : (word === "outer") === outer);
+function fits(values, place, lines) {
+  return Object.entries(place).every(([key, at]) => {
+    const word = values[`${key}s`] ?? "all", outer = at === 1 || at === lines;
+    return word === "all" ? [undefined, 0, at].includes(values[key]) : (word === "outer") === outer;
+  });
 }
 const isNone = one => one[1].kind === "none";
 
 function placesOf(name) {
-  const [what, at, level] = name.split("-"), column = what === "C", group = column ? "column_of" : "beam_of", key = column ? "line" : "bay";
-  const lines = sizes("bays").length + (column ? 1 : 0), found = groups().filter(([own, values]) => own === group && fits(values, key, Number(at), Number(level), lines));
-  return { group, key, at: Number(at), level: Number(level), found };
+  const [what, ...numbers] = name.split("-"), [at, storey] = numbers.map(Number), column = what === "C", group = column ? "column_of" : "beam_of";
+  const lines = sizes(baysKey()).length + (column ? 1 : 0), along = line[0], across = Number(line.slice(2));
+  const ofPlan = column ? (along === "x" ? { line_x: at, line_y: across } : { line_x: across, line_y: at }) : { along, bay: at, of_line: across };
+  const place = { ...(inPlan() ? ofPlan : { [column ? "line" : "bay"]: at }), storey };
+  // A wall stands in place of columns.
+  const found = groups().filter(([own, values]) => own === group && fits(values, place, lines)).sort((a, b) => column ? Boolean(a[1].along) - Boolean(b[1].along) : 0);
+  return { group, place, found };
 }
 const drawingOf = name => /^[CB]-/.test(name) ? placesOf(name).found.at(-1)?.[1].kind ?? "" : "";
 
 function removedMembers() {
-  const names = [], bays = sizes("bays").length;
+  const names = [], bays = sizes(baysKey()).length;
   sizes("storeys").forEach((_, k) => {
     for (let i = 1; i <= bays + 1; i++) names.push(`C-${i}-${k + 1}`);
     for (let i = 1; i <= bays; i++) names.push(`B-${i}-${k + 1}`);
@@ -104,12 +129,13 @@ function removedMembers() {
 }
 
 function remove(name) {
-  const { group, key, at, level, found } = placesOf(name), last = found.at(-1), all = groups();
+  const { group, place, found } = placesOf(name), last = found.at(-1), all = groups();
   const after = one => all.splice((all.findLastIndex(([own]) => own === group) + 1) || 1, 0, one);
   chosen = name;
-  if (!last || !isNone(last)) after([group, { [key]: at, storey: level, kind: "none" }]);
-  else if (last[1][key] === at && last[1].storey === level) all.splice(all.indexOf(last), 1);
-  else after([group, { [key]: at, storey: level, kind: found.findLast(one => !isNone(one))?.[1].kind ?? drawings()[0]?.[0] }]);
+  if (group === "column_of" && last?.[1].along) all.splice(all.indexOf(last), 1);
+  else if (!last || !isNone(last)) after([group, { ...place, kind: "none" }]);
+  else if (Object.entries(place).every(([key, at]) => last[1][key] === at)) all.splice(all.indexOf(last), 1);
+  else after([group, { ...place, kind: found.findLast(one => !isNone(one))?.[1].kind ?? drawings()[0]?.[0] }]);
   changed(true);
 }
 
@@ -210,9 +236,40 @@ function placeCells(key, kinds, level = "storey") {
   ];
 }
 
-function levelCell(level) {
-  return { key: level, label: level, choices: [["0", "all"], ...sizes("storeys").map((_, i) => [String(i + 1), String(i + 1)])], get: values => String(values[level] ?? 0),
-    set: (values, number) => { delete values[level]; if (number !== "0") values[level] = Number(number); } };
+const levelCell = level => numberCell(level, level, sizes("storeys").length);
+
+function numberCell(key, label, count) {
+  return { key, label, choices: [["0", "all"], ...Array.from({ length: count }, (_, i) => [String(i + 1), String(i + 1)])], get: values => String(values[key] ?? 0),
+    set: (values, number) => { delete values[key]; if (number !== "0") values[key] = Number(number); } };
+}
+
+// The same of a grid in plan, whose places are lines across x and y, or bays of a line.
+function planCells(group, kinds) {
+  const [x, y] = ["bays_x", "bays_y"].map(key => sizes(key).length), is = { key: "kind", label: "is", choices: [...kinds, "none"].map(kind => [kind, kind]) };
+  const along = { key: "along", label: "along", choices: [["x", "x"], ["y", "y"]] };
+  if (group !== "column_of") return [along, numberCell("bay", "bay", Math.max(x, y)), numberCell("of_line", "line", Math.max(x, y) + 1), levelCell("storey"), is];
+  const wall = { ...along, label: "wall", choices: [["", "no"], ["x", "along x"], ["y", "along y"]], get: values => values.along ?? "", set: (values, way) => { delete values.along; if (way) values.along = way; } };
+  return [numberCell("line_x", "at x", x + 1), numberCell("line_y", "at y", y + 1), wall, levelCell("storey"), is];
+}
+
+// The planar frame as the first of lines along x, with lines across it.
+function setInPlan() {
+  const all = groups(), frame = valuesOf(all, "frame"), bays = sizes("bays"), own = { column_of: ["line", bays.length + 1], beam_of: ["bay", bays.length], infill_of: ["bay", bays.length] };
+  const each = all.flatMap(one => {
+    const [name, { dead_load, live_load, ...values }] = one, [key, last] = own[name] ?? [], word = values[`${key}s`];
+    if (name === "node_load") return [];
+    if (name === "floor") return [[name, { ...values, ...(dead_load && { floor_load: 6e3 }), ...(live_load && { live_floor_load: 2e3 }) }]];
+    if (!key) return [one];
+    const places = word === "outer" ? [1, last] : word === "inner" ? Array.from({ length: Math.max(0, last - 2) }, (_, i) => i + 2) : [values[key]];
+    const ways = key === "line" ? [{}] : [{ along: "x" }, ...(places[0] || name === "infill_of" ? [] : [{ along: "y" }])];
+    delete values[`${key}s`];
+    delete values[key];
+    return ways.flatMap(way => places.map(at => [name, { ...way, ...values, ...(at && { [key === "line" ? "line_x" : key]: at }) }]));
+  });
+  delete frame.bays;
+  delete frame.wall_spans;
+  Object.assign(frame, { bays_x: bays, bays_y: [bays[0]] });
+  all.splice(0, all.length, ...each);
 }
 
 function showForm() {
@@ -227,15 +284,18 @@ function showForm() {
   const kinds = drawings().map(([name]) => name), infills = all.filter(([name]) => name === "infill").map(one => one[1].name), { spectrum } = valuesOf(all, "target") ?? {}, code = valuesOf(all, "assess")?.code ?? "en_1998_3";
   const list = (name, cells, more) => listRows(name, cells, { ...about, ...more });
   const levels = LEVELS[code].map(level => [level, level]).reverse();
+  const plan = inPlan(), along = plan && { along: "x" }, setPlan = element("button", { type: "button", id: "setinplan", onclick: () => act(setInPlan) }, "Set it in plan, with lines along x and y");
+  const cells = (group, names) => plan ? planCells(group, names) : placeCells(group === "column_of" ? "line" : "bay", names);
+  const loads = plan ? [load("floor_load", "dead", "area", 500), load("live_floor_load", "live", "area", 500), load("edge_load", "facade", "line", 1e3)] : [load("dead_load", "dead", "line", 1e3), load("live_load", "live", "line", 1e3)];
   get("form").replaceChildren(...[
-    ["Grid", rows(GRID)],
-    ["Columns and walls, the last that fits counts", list("column_of", placeCells("line", kinds), { what: "columns", least: 1, add: () => ({ lines: "outer", kind: kinds[0] }) })],
-    ["Beams, the last that fits counts", list("beam_of", placeCells("bay", kinds), { what: "beams", add: () => ({ kind: kinds.at(-1) }) })],
-    ["Loads on beams of floors", list("floor", [levelCell("floor"), load("dead_load", "dead", "line", 1e3), load("live_load", "live", "line", 1e3), load("mass", "mass", "mass", 1e3)], { what: "floor loads", add: last => ({ ...last, floor: 1 }) })],
-    ["Loads on nodes, as of facades", list("node_load", [...placeCells("line", null, "floor"), { key: "load", label: "weight", dimension: "force", step: 1e3 }], { what: "node loads", add: () => ({ lines: "outer", load: 25e3 }) })],
+    ["Grid", plan ? rows(IN_PLAN) : [...rows(GRID), setPlan]],
+    ["Columns and walls, the last that fits counts", list("column_of", cells("column_of", kinds), { what: "columns", least: 1, add: () => ({ ...(plan ? { line_x: 1 } : { lines: "outer" }), kind: kinds[0] }) })],
+    ["Beams, the last that fits counts", list("beam_of", cells("beam_of", kinds), { what: "beams", add: () => ({ ...along, kind: kinds.at(-1) }) })],
+    [plan ? "Loads on floors and outer beams" : "Loads on beams of floors", list("floor", [levelCell("floor"), ...loads, load("mass", "mass", "mass", 1e3)], { what: "floor loads", add: last => ({ ...last, floor: 1 }) })],
+    ["Loads on nodes, as of facades", plan ? [] : list("node_load", [...placeCells("line", null, "floor"), { key: "load", label: "weight", dimension: "force", step: 1e3 }], { what: "node loads", add: () => ({ lines: "outer", load: 25e3 }) })],
     ["Loads and masses", rows(LOADS)],
     ["Masonry", [...list("infill", INFILL, { what: "masonry", add: last => ({ ...(last ?? { thickness: 0.2, fm: 3e6 }), name: `I${infills.length + 1}` }) }),
-      ...(infills.length ? list("infill_of", placeCells("bay", infills), { what: "infills", add: () => ({ kind: infills.at(-1) }) }) : [])]],
+      ...(infills.length ? list("infill_of", cells("infill_of", infills), { what: "infills", add: () => ({ ...along, kind: infills.at(-1) }) }) : [])]],
     ["Loading", [...loadingRows(all, system, edit, false, LOADING), ...rows([PATTERN])]],
     ["Demand and acceptance", rows(DEMAND.map(field => field.path === "assess.level" ? { ...field, choices: levels } : field), field => !field.spectrum || field.spectrum === spectrum)],
   ].flatMap(([title, made]) => fieldGroup(title, made)));
@@ -305,6 +365,7 @@ function showPoint() {
   const text = `${shown(drift, 3)} %, base shear ${shown(found.base_shear[row] / factor)} ${unit}` + (found.dynamic ? `, ${shown(found.time[row])} s` : "");
   get("scrubbed").textContent = text;
   get("scrub").setAttribute("aria-valuetext", text);
+  drawPlan(get("plan"), found, at);
   drawFrame(get("frame"), found, at);
   drawCurve(get("loopfigure"), found, row);
   if (found.dynamic) timeFigure.moveCursor(found.time[row], 100 * found.storey_drift[row][0]);
@@ -319,14 +380,14 @@ function tell(name) {
   get("remove").textContent = removed ? `Put ${name} back` : name ? `Remove ${name}` : "Remove the member";
   if (i < 0) { get("told").textContent = removed ? `${name} is removed` : "A member under the pointer tells its forces; a click chooses it"; return; }
   const [force, newton] = unitOf(page.system, "force"), [moment, per] = unitOf(page.system, "moment"), at = Math.min(Number(get("scrub").value), found.pictures.length - 1);
-  const [axial, first, last, shear] = found.forces[at][i], ratio = Math.max(-1, ...(checks()?.ends ?? []).filter(one => one.member === name && one.status === "evaluated").map(one => one.ratio));
+  const [axial, first, last, shear] = found.forces[at][i], ratio = Math.max(-1, ...endsShown().filter(one => one.member === name && one.status === "evaluated").map(one => one.ratio));
   get("told").textContent = `${name}: N ${shown(axial / newton, 3)} ${force}, V ${shown(shear / newton, 3)} ${force}, M ${shown(first / per, 3)} and ${shown(last / per, 3)} ${moment}` + (ratio < 0 ? "" : `; demand over capacity ${shown(ratio, 3)}`);
 }
 
 // Hinges that were reached so far, or ends by the levels of the code: place and class.
 function hingesOf(found, row) {
   const reached = new Map(), words = new Map();
-  if (byLevels) for (const { member, end, exceeded } of checks()?.ends ?? []) reached.set(`${member} ${end}`, [member, end, EXCEEDED[exceeded] ?? "unknown"]);
+  if (byLevels) for (const { member, end, exceeded } of endsShown()) reached.set(`${member} ${end}`, [member, end, EXCEEDED[exceeded] ?? "unknown"]);
   else for (const { member, end, name, time, group } of found.events) {
     const kind = STATES.findIndex(([state]) => state === name), key = `${member} ${end}`;
     if (time > found.time[row] || kind < 0 || kind < (words.get(key) ?? 0)) continue;
@@ -336,9 +397,33 @@ function hingesOf(found, row) {
   return reached.values();
 }
 
+// The lines of a building where they stand, and the roof on its way: a click shows the frame of a line.
+function drawPlan(host, found, at) {
+  host.hidden = !found.frames;
+  if (host.hidden) return;
+  const { lines, roof, centre } = found.plan, xs = lines.flatMap(one => [one.from[0], one.to[0]]), ys = lines.flatMap(one => [one.from[1], one.to[1]]);
+  const [west, east, south, north] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)], wide = Math.max(east - west, 1), high = Math.max(north - south, 1);
+  const turned = ([x, y], [u, v, t], times) => [x + times * (u - t * (y - centre[1])), y + times * (v + t * (x - centre[0]))];
+  const corners = [[west, south], [east, north]], away = roof.flatMap(way => corners.map(corner => Math.hypot(...turned(corner, way, 1).map((value, k) => value - corner[k]))));
+  const times = 0.12 * Math.max(wide, high) / Math.max(1e-9, ...bounded(away, Math.max)), width = Math.max(300, host.clientWidth), scale = Math.min(0.6 * width / wide, 170 / high), height = high * scale + 76;
+  const put = point => [width / 2 + (point[0] - (west + east) / 2) * scale, height / 2 - (point[1] - (south + north) / 2) * scale].map(value => value.toFixed(1));
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "chart frames", role: "group", "aria-label": `Plan of ${lines.length} frames; the roof moves, displacements times ${shown(times, 2)}` });
+  const focused = host.contains(document.activeElement) ? document.activeElement.dataset?.name : null;
+  for (const { name, from, to } of lines) {
+    const path = ends => "M" + ends.map(end => put(end).join(" ")).join("L"), [x, y] = put(from), show = () => { line = name; chosen = ""; showPoint(); };
+    svg.append(svgElement("path", { class: "zero", d: path([from, to]) }), svgElement("text", name[0] === "x" ? { x: x - 34, y: Number(y) + 4 } : { x, y: Number(y) + 24, "text-anchor": "middle" }, name));
+    const way = svgElement("path", { class: `member${name === line ? " chosen" : ""}`, d: path([from, to].map(end => turned(end, roof[at], times))), role: "button", tabindex: 0, "data-name": name, "aria-pressed": String(name === line), "aria-label": `Frame ${name}` });
+    way.addEventListener("click", show);
+    way.addEventListener("keydown", event => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); show(); } });
+    svg.append(way);
+  }
+  host.replaceChildren(svg);
+  if (focused) svg.querySelector(`[data-name="${focused}"]`)?.focus();
+}
+
 // The frame with its dead load, and the frame on its way with its hinges.
 function drawFrame(host, found, at) {
-  const { storeys: levels, bays } = valuesOf(frameView.stood.loops.state.cases[0], "frame"), removed = removedMembers().filter(name => !found.members.includes(name)), row = found.pictures[at];
+  const given = valuesOf(frameView.stood.loops.state.cases[0], "frame"), levels = given.storeys, bays = given[baysKey(given)], removed = removedMembers().filter(name => !found.members.includes(name)), row = found.pictures[at];
   const wide = bays.reduce((sum, bay) => sum + bay, 0), high = found.height, width = Math.max(300, host.clientWidth);
   const [unit, factor] = unitOf(page.system, "length"), moved = found.moved[at];
   const ways = found.moved.flatMap(members => members.map(line => line.map(([x]) => x))).flat(), least = Math.min(0, ...bounded(ways, Math.min)), largest = Math.max(1e-12, ...bounded(ways, Math.max));
@@ -349,7 +434,7 @@ function drawFrame(host, found, at) {
   const narrow = width < 460, height = ground + 50 + 16 * (narrow ? legend.length : 1);
   const put = ([x, y]) => [left + x * scale, ground - y * scale], place = (i, point, far = times) => put([0, 1].map(k => found.still[i][point][k] + far * moved[i][point][k]));
   const path = (i, far) => found.still[i].map((_, point) => (point ? "L" : "M") + place(i, point, far).map(value => value.toFixed(1)).join(" ")).join("");
-  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "chart frames", role: "group", "aria-label": `Frame of ${levels.length} storeys and ${bays.length} bays, displacements times ${shown(times, 2)}. Arrow keys go from member to member, Delete removes one.` });
+  const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "chart frames", role: "group", "aria-label": `Frame ${found.frames ? `${line} ` : ""}of ${levels.length} storeys and ${bays.length} bays, displacements times ${shown(times, 2)}. Arrow keys go from member to member, Delete removes one.` });
   const focused = host.contains(document.activeElement) ? document.activeElement.dataset?.name : null;
   const axes = bays.reduce((all, bay) => [...all, all.at(-1) + bay], [0]), floors = levels.reduce((all, one) => [...all, all.at(-1) + one], [0]);
   const member = (name, d, words, kind = "") => {

@@ -13,6 +13,7 @@ export const SYSTEMS = {
 };
 for (const [key, system] of Object.entries(SYSTEMS)) {
   system.line = { mm: ["kN/m", 1e3], m: ["kN/m", 1e3], si: ["N/m", 1], in: ["kip/ft", 14593.90293720636] }[key];
+  system.area = { mm: ["kN/m²", 1e3], m: ["kN/m²", 1e3], si: ["N/m²", 1], in: ["psf", 47.88025898033584] }[key];
   system.turning = [`${system.moment[0]}/rad`, system.moment[1]];
   system.stiffness = [`${system.force[0]}/${system.length[0]}`, system.force[1] / system.length[1]];
 }
