@@ -34,6 +34,8 @@ contains
       type(end_state), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: before(frame%members), change, last
+      type(checkpoint_type) :: checkpoint
+      type(spring_array) :: springs
       integer :: round
 
       if (.not. frame%is_loaded()) return
@@ -41,7 +43,7 @@ contains
       change = huge(1.0_wp)
       do round = 1, most_rounds
          before = frame%element(:frame%members)%compression
-         call load_once(frame, state, error)
+         call load_once(frame, checkpoint, springs, error)
          if (.not. allocated(error)) call check_members(frame, error)
          if (allocated(error)) call check_stability(frame, error)
          if (allocated(error) .or. .not. frame%axially_loaded) exit
@@ -50,6 +52,17 @@ contains
          if (change <= same_force*maxval(abs(before))) exit
          if (change <= nearly_same*maxval(abs(before)) .and. change > 0.5_wp*last) exit
       end do
+      if (.not. allocated(error)) then
+         checkpoint%axial_force = frame%constant_axial
+         ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
+         checkpoint%force = 0.0_wp
+         checkpoint%load = 0.0_wp
+         checkpoint%input = 0.0_wp
+         checkpoint%residual = 0.0_wp
+         checkpoint%method = 0
+         call state%start_saving(frame, checkpoint, springs)
+         call state%finish_saving()
+      end if
       ! The path has one row, from no load to all of it.
       if (allocated(error)) error%message = 'dead load: '//error%message(len('row 1: ') + 1:)
    end subroutine put_dead_load
@@ -115,17 +128,16 @@ contains
    end subroutine check_members
 
    !> Apply the dead load to the frame without load, along a straight path from nothing to all of it. The end
-   !> is the state in which analyses begin, and gives the compression of the members.
-   subroutine load_once(frame, state, error)
+   !> gives the compression of the members.
+   subroutine load_once(frame, checkpoint, springs, error)
       type(frame_type), intent(inout), target :: frame
-      type(end_state), intent(out) :: state
+      type(checkpoint_type), intent(out) :: checkpoint
+      type(spring_array), intent(out) :: springs
       type(error_type), allocatable, intent(out) :: error
       type(frame_type), target :: bare, unloaded
       type(equilibrium_type), target :: equilibrium
       type(array_recorder), target :: nothing
       type(task_type), target :: task
-      type(checkpoint_type) :: checkpoint
-      type(spring_array) :: springs
 
       bare = frame
       call bare%leave_out_later()
@@ -133,23 +145,14 @@ contains
       unloaded = bare
       call unloaded%take_load_off()
       task%recorder => nothing
-      task%keeps_end = .true.
-      call trace_straight(unloaded, equilibrium, .true., [1.0_wp], task, error)
-      if (allocated(error)) return
-      call frame%create_springs(springs, frame%constant_axial)
-      call task%after%restore(frame, checkpoint, springs, error)
+      call trace_straight(unloaded, equilibrium, .true., [1.0_wp], task, error, checkpoint, springs)
+      if (.not. allocated(error) .and. task%summary%has_fallen()) then
+         call fatal_error(error, analysis_failed, 'row 1: a joint of layers loses its axial load under '// &
+                          'it; give it more strength, or less load')
+      end if
       if (allocated(error)) return
       call frame%build_later(springs%d)
       call frame%set_compression(springs%d, springs%forces(springs%d))
-      checkpoint%axial_force = frame%constant_axial
-      ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
-      checkpoint%force = 0.0_wp
-      checkpoint%load = 0.0_wp
-      checkpoint%input = 0.0_wp
-      checkpoint%residual = 0.0_wp
-      checkpoint%method = 0
-      call state%start_saving(frame, checkpoint, springs)
-      call state%finish_saving()
    end subroutine load_once
 
 end module rbs_solve_static_dead_load

@@ -12,7 +12,7 @@ module rbs_solve_static_resume
    implicit none
    private
 
-   public :: begin_path, end_path
+   public :: begin_path, end_path, checkpoint_of
 
    !> Joints have come to equilibrium if a correction is below this share of the deformations, measured by the
    !> initial stiffness; where round-off ends the progress before, below the second.
@@ -199,6 +199,17 @@ contains
       logical, intent(in) :: varies
       type(end_state), intent(inout) :: after
       type(checkpoint_type) :: checkpoint
+
+      checkpoint = checkpoint_of(path, varies)
+      call after%start_saving(path%structure, checkpoint, path%springs)
+      call path%serialize(after%stream)
+      call after%finish_saving()
+   end subroutine end_path
+
+   !> Numbers of the state in which the path ends, besides its springs.
+   type(checkpoint_type) function checkpoint_of(path, varies) result(checkpoint)
+      class(static_path), intent(inout) :: path
+      logical, intent(in) :: varies
       type(energy_type) :: energy
 
       checkpoint%kind = static_state
@@ -223,9 +234,6 @@ contains
       checkpoint%residual = energy%residual
       checkpoint%load(1) = path%force
       checkpoint%method = kind_of(path, varies)
-      call after%start_saving(path%structure, checkpoint, path%springs)
-      call path%serialize(after%stream)
-      call after%finish_saving()
-   end subroutine end_path
+   end function checkpoint_of
 
 end module rbs_solve_static_resume

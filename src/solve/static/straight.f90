@@ -6,12 +6,14 @@ module rbs_solve_static_straight
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_straight_motion, only: go_along, nearest_end
+   use rbs_solve_end_state, only: checkpoint_type
    use rbs_solve_static_corner, only: turn_corner, report_no_line, is_spent
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, state_of, target_of, weakest_spring, is_on_end, &
                                     on_the_end, serialize_path
-   use rbs_solve_static_resume, only: begin_path, end_path
+   use rbs_solve_static_resume, only: begin_path, end_path, checkpoint_of
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: structure_type
    implicit none
@@ -54,7 +56,7 @@ module rbs_solve_static_straight
 contains
 
    !> Follow the targets one after the other.
-   subroutine trace_straight(structure, equilibrium, by_force, target, task, error)
+   subroutine trace_straight(structure, equilibrium, by_force, target, task, error, checkpoint, springs)
       class(structure_type), intent(in), target :: structure
       !> That of the structure
       type(equilibrium_type), intent(inout), target :: equilibrium
@@ -64,6 +66,9 @@ contains
       real(wp), intent(in) :: target(:)
       type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
+      !> The end itself, in place of a state that is kept
+      type(checkpoint_type), intent(out), optional :: checkpoint
+      type(spring_array), intent(out), optional :: springs
       type(straight_path) :: path
 
       path%structure => structure
@@ -77,8 +82,11 @@ contains
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return
       call path%follow(target, task, error)
-      if (allocated(error) .or. .not. task%keeps_end) return
-      if (.not. task%summary%has_fallen()) call end_path(path, .false., task%after)
+      if (allocated(error) .or. task%summary%has_fallen()) return
+      if (task%keeps_end) call end_path(path, .false., task%after)
+      if (.not. (present(checkpoint) .and. present(springs))) return
+      checkpoint = checkpoint_of(path, .false.)
+      springs = path%springs
    end subroutine trace_straight
 
    !> Go on to a target.
