@@ -156,7 +156,7 @@ def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
             raise TypeError
         array = array.astype(np.float64)
     except Exception:  # Of any class of the caller.
-        raise InputError(f"{name} must be an array of numbers", name) from None
+        raise InputError(f"{name} = {shown(values)} must be an array of numbers", name) from None
     if shape == "any":
         return array
     if shape == "1 or m" and array.ndim == 0:

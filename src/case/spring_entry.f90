@@ -389,7 +389,7 @@ contains
          end do
          if (j > list%count) then
             call messages%add_at(layers%where, '&layers: there is no &layer_spring with id = '// &
-                                 to_text(layers%layer(i)))
+                                 to_text(layers%layer(i))//'; add it, or correct spring')
             return
          end if
          springs(i) = list%entry(j)%spring

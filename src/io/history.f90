@@ -208,7 +208,7 @@ contains
             history%stated = file%text(first:last)
          end do
          if (.not. found) then
-            call fatal_error(error, bad_input, path//': has no rows of numbers')
+            call fatal_error(error, bad_input, path//': has no rows of numbers; check the file')
             return
          end if
          do i = 1, len(separators) - 1
@@ -258,7 +258,7 @@ contains
          end do
          call file%go_back(begin)
          if (rows == 0) then
-            call fatal_error(error, bad_input, path//': has no rows of numbers')
+            call fatal_error(error, bad_input, path//': has no rows of numbers; check the file')
             return
          end if
          history%rows = 0
@@ -278,7 +278,8 @@ contains
             else if (fields%count /= history%columns) then
                call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has '// &
                                 to_text(fields%count)//trim(merge(' value ', ' values', &
-                                fields%count == 1))//', the rows before have '//to_text(history%columns))
+                                fields%count == 1))//', the rows before have '//to_text(history%columns)// &
+                                '; every row has one for each column')
                return
             end if
             history%rows = history%rows + 1

@@ -199,7 +199,7 @@ class GroundMotion:
             )
         husid = self._husid()
         if husid[-1] == 0:
-            raise InputError(f"{self._who()}: a motion without acceleration has no duration")
+            raise InputError(f"{self._who()}: a motion at rest has no duration; leave it out")
         at = np.interp([low, high], 100 * husid / husid[-1], self.time)
         return float(at[1] - at[0])
 

@@ -151,14 +151,14 @@ def infill_groups(places: Sequence[tuple[dict[str, Any], Infill | None]]) -> _co
     return _core.joined(parts)
 
 
-def _masses(given: Any, floors: Array, mass: str | None) -> dict[str, Any]:
-    """Return floor masses: those that were given, which are compared, or those of the loads."""
-    if given is None:
+def _masses(floor_mass: Any, floors: Array, mass: str | None) -> dict[str, Any]:
+    """Return floor masses: stated ones, compared with the loads, or those of the loads."""
+    if floor_mass is None:
         if mass is None:
             return {}
         return {"floor_mass": floors if len(set(floors.tolist())) > 1 else floors[:1]}
     stated = np.broadcast_to(
-        _arguments.vector(given, "frame: floor_mass", shape="1 or m"), floors.shape
+        _arguments.vector(floor_mass, "frame: floor_mass", shape="1 or m"), floors.shape
     )
     apart = np.abs(stated - floors) > _DIFFER * floors
     if mass is not None and apart.any():
@@ -167,15 +167,15 @@ def _masses(given: Any, floors: Array, mass: str | None) -> dict[str, Any]:
             f"frame: floor_mass of floor {at + 1} is {stated[at]:.4g} kg, and its loads weigh "
             f"{floors[at]:.4g} kg; leave out floor_mass, or mass"
         )
-    return {"floor_mass": given}
+    return {"floor_mass": floor_mass}
 
 
-def cells_of_walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSection]:
+def cells_of_walls(walls: Any, lines: int, storeys: int) -> dict[tuple[int, int], WallSection]:
     """Return the sections of lines that are walls, by line and storey, 0 for all."""
-    found: dict[tuple[int, int], WallSection] = {}
-    for line, one in (given or {}).items():
+    cells: dict[tuple[int, int], WallSection] = {}
+    for line, sections in (walls or {}).items():
         number = _arguments.integer(line, "frame: walls", least=1, most=lines)
-        each = [one] if isinstance(one, WallSection) else list(one)
+        each = [sections] if isinstance(sections, WallSection) else list(sections)
         for section in each:
             _arguments.instance(section, f"frame: walls: line {number}", WallSection)
         if len(each) not in (1, storeys):
@@ -184,42 +184,42 @@ def cells_of_walls(given: Any, lines: int, storeys: int) -> dict[tuple[int, int]
                 "one, or one for each"
             )
         places = [0] if len(each) == 1 else range(1, storeys + 1)
-        found |= {(number, k): section for k, section in zip(places, each, strict=True)}
-    return found
+        cells |= {(number, k): section for k, section in zip(places, each, strict=True)}
+    return cells
 
 
-def spans_of_walls(given: Any, lines: int) -> tuple[float, ...]:
+def spans_of_walls(stated: Any, lines: int) -> tuple[float, ...]:
     """Return M/V of walls, one for all lines or one for each; 0 where it is not given."""
-    if given is None:
+    if stated is None:
         return ()
-    if not isinstance(given, Mapping):
-        each = _arguments.vector(given, "frame: wall_spans", shape="1 or m").tolist()
+    if not isinstance(stated, Mapping):
+        each = _arguments.vector(stated, "frame: wall_spans", shape="1 or m").tolist()
         if len(each) not in (1, lines) or min(each) < 0.0:
             raise InputError(
-                f"frame: wall_spans = {_arguments.shown(given)} must be one length above 0, or one "
-                f"for each of {lines} lines, 0 where it is to be found"
+                f"frame: wall_spans = {_arguments.shown(stated)} must be one length above 0, or "
+                f"one for each of {lines} lines, 0 where it is to be found"
             )
         return tuple(each)
     spans = [0.0] * lines
-    for line, span in given.items():
+    for line, span in stated.items():
         number = _arguments.integer(line, "frame: wall_spans", least=1, most=lines)
         spans[number - 1] = _arguments.number(span, "frame: wall_spans", above=0.0, unit="m")
     return tuple(spans)
 
 
-def loads_of_nodes(given: Any, lines: int) -> dict[tuple[int, int], float]:
+def loads_of_nodes(weights: Any, lines: int) -> dict[tuple[int, int], float]:
     """Return weights on the nodes of floors by line and floor, 0 for all."""
-    rules = given if isinstance(given, Mapping) else {("outer", 0): given} if given else {}
-    found = {
+    rules = weights if isinstance(weights, Mapping) else {("outer", 0): weights} if weights else {}
+    loads = {
         place: _arguments.number(load, "frame: node_load")
         for pair, load in rules.items()
         for place in places_of(pair, "node_load", lines)
     }
-    told_of_small("frame: node_load", list(found.values()), "N", "25 kN is 25e3")
-    return found
+    told_of_small("frame: node_load", list(loads.values()), "N", "25 kN is 25e3")
+    return loads
 
 
-def loads_of_beams(given: Any, name: str, storeys: int, bays: int) -> Array:
+def loads_of_beams(loads: Any, name: str, storeys: int, bays: int) -> Array:
     """Return loads of beams: one, one for each floor, or tuples of each bay where these differ.
 
     Returns
@@ -227,16 +227,16 @@ def loads_of_beams(given: Any, name: str, storeys: int, bays: int) -> Array:
     ndarray, shape (storeys, bays) or (storeys, 1)
         The loads [N/m].
     """
-    rows = given if isinstance(given, (list, tuple)) or np.ndim(given) > 0 else [given]
+    rows = loads if isinstance(loads, (list, tuple)) or np.ndim(loads) > 0 else [loads]
     named = f"frame: {name}"
-    each = [_arguments.vector(one, named, shape="1 or m") for one in rows]
-    if len(each) not in (1, storeys) or any(one.size not in (1, bays) for one in each):
+    each = [_arguments.vector(row, named, shape="1 or m") for row in rows]
+    if len(each) not in (1, storeys) or any(row.size not in (1, bays) for row in each):
         raise InputError(
             f"frame: {name} has {len(each)} values for {storeys} storeys; give one, or one for each"
-            + ("" if all(one.size == 1 for one in each) else f", and in it one for {bays} bays")
+            + ("" if all(row.size == 1 for row in each) else f", and in it one for {bays} bays")
         )
-    width = max((one.size for one in each), default=1)
-    table = np.array([np.broadcast_to(one, width) for one in each])
+    width = max((row.size for row in each), default=1)
+    table = np.array([np.broadcast_to(row, width) for row in each])
     return np.array(np.broadcast_to(table, (max(storeys, len(each)), width)))
 
 
@@ -271,27 +271,27 @@ class Grid:
         self.beams = {(i, k): at_place(beams, i, k) for k in levels for i in lines[:-1]}
         self.kinds: tuple[dict[Any, FrameMember | None], ...] = ({}, {})
         #: Members of the gross sections, by the identity of what stands in places.
-        different = {id(one): one for one in self.all_cells()}
-        self.elastic = {key: elastic_kind(one) for key, one in different.items()}
+        different = {id(cell): cell for cell in self.all_cells()}
+        self.elastic = {key: elastic_kind(cell) for key, cell in different.items()}
 
     def check_places(self, name: str, cells: Mapping[tuple[int, int], Any], lines: int) -> None:
         """Refuse places that the grid does not have."""
         line = "bay" if name in ("beams", "infills") else "line"
         for at, storey in cells:
-            for what, given, most in ((line, at, lines), ("storey", storey, len(self.storeys))):
-                if not 0 <= given <= most:
+            for what, number, most in ((line, at, lines), ("storey", storey, len(self.storeys))):
+                if not 0 <= number <= most:
                     raise InputError(
-                        f"frame: {name}: {what} = {given}, but the frame has {most} {what}s; "
+                        f"frame: {name}: {what} = {number}, but the frame has {most} {what}s; "
                         "correct it, or give 0 for all"
                     )
 
     def all_cells(self) -> list[Any]:
         """Return what stands in the places where there is a member."""
-        return [one for one in (*self.columns.values(), *self.beams.values()) if one is not None]
+        return [cell for cell in (*self.columns.values(), *self.beams.values()) if cell is not None]
 
-    def floors(self, given: Any, name: str) -> Array:
+    def floors(self, loads: Any, name: str) -> Array:
         """Return a value for each floor and bay, shape (storeys, bays), or (storeys, 1)."""
-        values = loads_of_beams(given, name, len(self.storeys), len(self.bays))
+        values = loads_of_beams(loads, name, len(self.storeys), len(self.bays))
         told_of_small(f"frame: {name}", values, "N/m", "10 kN/m is 10e3")
         return values
 
@@ -322,27 +322,28 @@ class Grid:
 
     def weights_of_beams(self) -> Array:
         """Return the weight of the beams of each floor, of their mean section [N/m]."""
-        found = []
+        mean = []
         for k in range(len(self.storeys)):
-            own = [self._area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
-            found.append(CONCRETE_WEIGHT * float(np.dot(own, self.bays)) / max(sum(self.bays), 1.0))
-        return np.array(found)
+            areas = [self._area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
+            weight = CONCRETE_WEIGHT * float(np.dot(areas, self.bays))
+            mean.append(weight / max(sum(self.bays), 1.0))
+        return np.array(mean)
 
     def weights(self, walls: dict[tuple[int, int], float], heavy: bool) -> dict[str, float]:
         """Return the weights on the nodes of floors [N]: walls, and halves of the columns."""
-        found = {}
+        weights = {}
         for i, k in self.columns:
             weight = at_place(walls, i, k) or 0.0
             if heavy:
                 above = self.columns.get((i, k + 1))
-                for one, height in (
+                for cell, height in (
                     (self.columns[i, k], self.storeys[k - 1]),
                     (above, self.storeys[k] if above is not None else 0.0),
                 ):
-                    weight += 0.5 * CONCRETE_WEIGHT * self._area(one) * height
+                    weight += 0.5 * CONCRETE_WEIGHT * self._area(cell) * height
             if weight:
-                found[f"N-{i}-{k}"] = weight
-        return found
+                weights[f"N-{i}-{k}"] = weight
+        return weights
 
     def members(
         self,
@@ -361,14 +362,14 @@ class Grid:
         axial = axial_loads
         if axial is None:
             elastic = [
-                {at: self.elastic.get(id(one)) for at, one in cells.items()}
+                {at: self.elastic.get(id(cell)) for at, cell in cells.items()}
                 for cells in (self.columns, self.beams)
             ]
-            given = {key: value for key, value in more.items() if key != "losses"}
+            arguments = {key: value for key, value in more.items() if key != "losses"}
             with notes_off():
                 parts = cls(
                     self.storeys, self.bays or None, elastic[0], elastic[1] or None,
-                    **given | {"kinematics": "small", "panel": None, "damping": None},
+                    **arguments | {"kinematics": "small", "panel": None, "damping": None},
                 ).parts  # fmt: skip
             axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
         load = {
@@ -391,43 +392,43 @@ class Grid:
         }
         spans = self._spans_of_columns(load, ends["columns"], more)
         walls = self._wall_members(load, spans, drawing.wall_spans)
-        for (i, k), one in self.columns.items():
+        for (i, k), cell in self.columns.items():
             if (i, k) in walls:
                 columns[i, k] = walls[i, k]
                 continue
             place = self.storeys[k - 1], ends["columns"][i, k], load[i, k], 0.0
-            columns[i, k] = _kind(one, *place, Place("column", i, k), spans.get((i, k)))
-        for (i, k), one in self.beams.items():
+            columns[i, k] = _kind(cell, *place, Place("column", i, k), spans.get((i, k)))
+        for (i, k), cell in self.beams.items():
             place = self.bays[i - 1], ends["beams"][i, k], 0.0, loads[i, k]
-            beams[i, k] = _kind(one, *place, Place("beam", i, k))
+            beams[i, k] = _kind(cell, *place, Place("beam", i, k))
         return list(self.kinds)
 
-    def loads_of_beams(self, given: Any) -> dict[tuple[int, int], float]:
+    def loads_of_beams(self, beam_load: Any) -> dict[tuple[int, int], float]:
         """Return the loads of all beams by bay and storey [N/m]."""
         storeys, bays = len(self.storeys), len(self.bays)
-        loads = loads_of_beams(given, "beam_load", storeys, bays)
+        loads = loads_of_beams(beam_load, "beam_load", storeys, bays)
         each = np.broadcast_to(loads, (storeys, bays)).tolist()
         return {(i, k): each[k - 1][i - 1] for i, k in self.beams}
 
-    def _area(self, one: Any) -> float:
+    def _area(self, cell: Any) -> float:
         """Return the area of the mean section of a member; 0 of one by hand [m2]."""
-        kind = self.elastic.get(id(one))
-        return kind.area if kind is not None and is_drawn(one) else 0.0
+        kind = self.elastic.get(id(cell))
+        return kind.area if kind is not None and is_drawn(cell) else 0.0
 
-    def _rounded(self, one: Any, load: float) -> float:
-        """Return an axial load in steps of a part of f'c A_g; a column in tension has none."""
-        if not is_drawn(one):
+    def _rounded(self, cell: Any, load: float) -> float:
+        """Return an axial load rounded to steps of 1 % of f'c A_g; 0 for a column in tension."""
+        if not is_drawn(cell):
             return load
-        step = _STEP * self._area(one) * halves_of(one)[0].concrete.fc
+        step = _STEP * self._area(cell) * halves_of(cell)[0].concrete.fc
         return _in_steps(load, step) if load > 0 else 0.0
 
     def note_on_sections(self) -> None:
         """Tell of sections that seem exchanged: columns like beams, and beams like columns."""
         columns, beams = (
-            [part for one in cells.values() if is_drawn(one) for part in halves_of(one)]
+            [part for cell in cells.values() if is_drawn(cell) for part in halves_of(cell)]
             for cells in (self.columns, self.beams)
         )
-        columns = [one for one in columns if not isinstance(one, WallSection)]
+        columns = [section for section in columns if not isinstance(section, WallSection)]
         if not columns or not beams:
             return
         for like_beam in (_has_sides, _is_slim):
@@ -440,15 +441,15 @@ class Grid:
 
     def note_on_bars(self, beam_load: Any) -> None:
         """Tell of loaded beams with more bars below than above at their ends, which hog."""
-        loads, found = self.loads_of_beams(beam_load), []
-        for (i, k), one in self.beams.items():
-            if not (is_drawn(one) and loads[i, k] > 0.0):
+        loads, doubtful = self.loads_of_beams(beam_load), []
+        for (i, k), cell in self.beams.items():
+            if not (is_drawn(cell) and loads[i, k] > 0.0):
                 continue
-            for part in halves_of(one):
+            for part in halves_of(cell):
                 if part.mirrored.tension_steel > _MORE_BELOW * part.tension_steel:
-                    found.append(Place("beam", i, k).name)
-        if found:
-            names = list(dict.fromkeys(found))
+                    doubtful.append(Place("beam", i, k).name)
+        if doubtful:
+            names = list(dict.fromkeys(doubtful))
             more = f" and {len(names) - 1} more" if len(names) > 1 else ""
             warn(
                 f"beam {names[0]}{more}: there are more bars below than above at an end, where "
@@ -463,7 +464,7 @@ class Grid:
         more: dict[str, Any],
     ) -> dict[tuple[int, int], tuple[Pair, Pair]]:
         """Return M/V of the ends of drawn columns where drawn beams yield, like for both sides."""
-        found = {}
+        spans = {}
         levels = range(1, len(self.storeys) + 1)
         pattern = np.ones(len(self.storeys))
         if more.get("pattern", "triangular") != "uniform":
@@ -472,7 +473,7 @@ class Grid:
             line = [self.columns[i, k] for k in levels]
             beams = [self.around(i, k)[1] for k in levels]
             if not all(map(is_drawn, line)) or not all(
-                one is None or is_drawn(one) for pair in beams for one in pair
+                cell is None or is_drawn(cell) for pair in beams for cell in pair
             ):
                 continue
             clear = [self.storeys[k - 1] - sum(ends[i, k]) for k in levels]
@@ -480,33 +481,33 @@ class Grid:
                 continue
             try:
                 plastic = [
-                    tuple(sum(plastic_moments(half, load[i, k])) / 2 for half in halves_of(one))
-                    for k, one in zip(levels, line, strict=True)
+                    tuple(sum(plastic_moments(half, load[i, k])) / 2 for half in halves_of(cell))
+                    for k, cell in zip(levels, line, strict=True)
                 ]
                 nodes = [
                     sum(
-                        sum(plastic_moments(halves_of(one)[1 - at], 0.0))
+                        sum(plastic_moments(halves_of(cell)[1 - at], 0.0))
                         / 2
                         * self._to_axis(i, k, i - 1 + at)
-                        for at, one in enumerate(pair)
-                        if one is not None
+                        for at, cell in enumerate(pair)
+                        if cell is not None
                     )
                     for k, pair in zip(levels, beams, strict=True)
                 ]
             except InputError:
                 continue
             base = plastic[0][0] if more.get("base", "fixed") == "fixed" else 0.0
-            given: Any = base, plastic, nodes, self.storeys, clear, pattern.tolist()
-            for k, own in zip(levels, line_spans(*given), strict=True):
+            arguments: Any = base, plastic, nodes, self.storeys, clear, pattern.tolist()
+            for k, pair in zip(levels, line_spans(*arguments), strict=True):
                 step = _SPAN_STEP * clear[k - 1]
-                low, high = (_in_steps(each, step) for each in own)
-                found[i, k] = (low, low), (high, high)
-        return found
+                low, high = (_in_steps(each, step) for each in pair)
+                spans[i, k] = (low, low), (high, high)
+        return spans
 
     def _to_axis(self, i: int, k: int, bay: int) -> float:
         """Return the moment of a beam at the axis of a wall over that at its face; else 1."""
         arms = [
-            0.5 * wall.length if (wall := self.wallat_place(line, k)) else 0.0
+            0.5 * wall.length if (wall := self.wall_at(line, k)) else 0.0
             for line in (i, bay + 1 if bay == i else bay)
         ]
         return 1.0 + 2.0 * arms[0] / max(self.bays[bay - 1] - sum(arms), 1e-3)
@@ -515,12 +516,12 @@ class Grid:
         self,
         load: dict[tuple[int, int], float],
         spans: dict[tuple[int, int], tuple[Pair, Pair]],
-        given: tuple[float, ...],
+        wall_spans: tuple[float, ...],
     ) -> dict[tuple[int, int], FrameMember]:
         """Return the kinds of walls: those of one line that stand on each other are one wall."""
-        found: dict[tuple[int, int], FrameMember] = {}
+        kinds: dict[tuple[int, int], FrameMember] = {}
         for i in range(1, len(self.bays) + 2):
-            stated = given[min(i, len(given)) - 1] if given else 0.0
+            stated = wall_spans[min(i, len(wall_spans)) - 1] if wall_spans else 0.0
             for low, high in self._runs(i):
                 levels = range(low, high + 1)
                 sections: Any = [self.columns[i, k] for k in levels]
@@ -533,8 +534,8 @@ class Grid:
                     )
                 except InputError as error:
                     raise InputError(f"frame: the wall of line {i}: {error}") from None
-                found |= {(i, k): kind for k, kind in zip(levels, made, strict=True)}
-        return found
+                kinds |= {(i, k): kind for k, kind in zip(levels, made, strict=True)}
+        return kinds
 
     def _runs(self, i: int) -> list[tuple[int, int]]:
         """Return the lowest and highest storey of each wall of a line."""
@@ -548,15 +549,15 @@ class Grid:
                 runs.append((k, k))
         return runs
 
-    def wallat_place(self, i: int, k: int) -> WallSection | None:
+    def wall_at(self, i: int, k: int) -> WallSection | None:
         """Return the longer wall that goes through a node."""
         walls = [self.columns.get((i, level)) for level in (k, k + 1)]
-        own = [one for one in walls if isinstance(one, WallSection)]
-        return max(own, key=lambda one: one.length, default=None)
+        sections = [section for section in walls if isinstance(section, WallSection)]
+        return max(sections, key=lambda section: section.length, default=None)
 
     def infilled(self, cells: Mapping[tuple[int, int], Infill | None]) -> list[InfilledBay]:
         """Return the infills in their places."""
-        found = []
+        bays = []
         self.check_places("infills", cells, len(self.bays))
         for (i, k), beam in self.beams.items():
             infill = at_place(cells, i, k)
@@ -568,7 +569,7 @@ class Grid:
                 missing = "beam above it" if beam is None else "column beside it"
                 raise InputError(f"{where} has no {missing}; give None in its place")
             run, rise = self.bays[i - 1], self.storeys[k - 1]
-            length = run - sum(_half_depth(one, beam, end) for end, one in enumerate(sides))
+            length = run - sum(_half_depth(cell, beam, end) for end, cell in enumerate(sides))
             height = rise - _half_depth(beam, sides[0], 1)
             height -= _half_depth(self.beams.get((i, k - 1)), sides[0], 0) if k > 1 else 0.0
             if not (length > 0.0 and height > 0.0):
@@ -578,8 +579,8 @@ class Grid:
                 bay.infill.opening_factor(length, height)
             except InputError as error:
                 raise InputError(f"{where}: {error}") from None
-            found.append(bay)
-        return found
+            bays.append(bay)
+        return bays
 
     def around(self, i: int, k: int) -> tuple[list[Any], list[Any]]:
         """Return the columns below and above a node, and the beams on its left and right."""
@@ -596,14 +597,14 @@ class Grid:
         left, right = self.beams.get((i - 1, k)), self.beams.get((i, k))
         beams = [halves_of(left)[1]] if is_drawn(left) else []
         beams += [halves_of(right)[0]] if is_drawn(right) else []
-        wall = self.wallat_place(i, k)
+        wall = self.wall_at(i, k)
         if wall is not None:
             # It goes on through the floor, and beams reach its face.
             return 0.0, 0.5 * wall.length
         if not columns or not beams:
             return 0.0, 0.0
         # The half of a column that ends in the node.
-        parts = [halves_of(one)[j == 0] for j, (one, _) in enumerate(columns)]
+        parts = [halves_of(cell)[j == 0] for j, (cell, _) in enumerate(columns)]
         try:
             return rigid_ends(parts, beams, axial_load=[n for _, n in columns], share=drawing.ends)
         except InputError as error:
@@ -611,20 +612,20 @@ class Grid:
 
     def panels(self, drawing: FrameDrawing) -> dict[str, Any]:
         """Return the springs in the panels of the nodes."""
-        found: dict[str, Any] = {}
+        springs: dict[str, Any] = {}
         hoops = drawing.panel_hoops
         if hoops is None:
-            return found
+            return springs
         if hoops != "none":
             _arguments.instance(hoops, "frame: panel_hoops", Ties, 'or "none"')
         for i, k in self.columns:
             columns, beams = (
-                [one for one in several if is_drawn(one)] for several in self.around(i, k)
+                [cell for cell in several if is_drawn(cell)] for several in self.around(i, k)
             )
-            if not columns or not beams or self.wallat_place(i, k) is not None:
+            if not columns or not beams or self.wall_at(i, k) is not None:
                 continue
             column = halves_of(columns[0])[0]
-            beam = max((halves_of(one)[0] for one in beams), key=lambda one: one.depth)
+            beam = max((halves_of(cell)[0] for cell in beams), key=lambda cell: cell.depth)
             if not (
                 isinstance(column, RectangularSection) and isinstance(beam, RectangularSection)
             ):
@@ -632,18 +633,18 @@ class Grid:
             going = len(columns) + len(beams)
             kind: PanelClass = "interior" if going == 4 else "knee" if going == 2 else "exterior"
             ties = None if hoops == "none" else hoops
-            found[f"N-{i}-{k}"] = JointPanel(column, beam, kind, hoops=ties).spring()
-        return found
+            springs[f"N-{i}-{k}"] = JointPanel(column, beam, kind, hoops=ties).spring()
+        return springs
 
 
-def halves_of(one: Any) -> Halves:
+def halves_of(cell: Any) -> Halves:
     """Return the sections of the two halves of a member."""
-    return one if isinstance(one, tuple) else (one, one)
+    return cell if isinstance(cell, tuple) else (cell, cell)
 
 
-def is_drawn(one: Any) -> bool:
+def is_drawn(cell: Any) -> bool:
     """Return whether a cell has sections."""
-    return one is not None and not isinstance(one, FrameMember)
+    return cell is not None and not isinstance(cell, FrameMember)
 
 
 def _has_sides(section: Section) -> bool:
@@ -656,25 +657,25 @@ def _is_slim(section: Section) -> bool:
     return section.depth > _SLIM * section.width
 
 
-def _half_depth(one: Any, other: Any, end: int) -> float:
+def _half_depth(cell: Any, other: Any, end: int) -> float:
     """Return half the depth of a member [m]; of one by hand, the rigid end of the other there."""
-    if is_drawn(one):
-        return 0.25 * sum(part.depth for part in halves_of(one))
-    rigid = other.rigid_end if one is not None and isinstance(other, FrameMember) else 0.0
+    if is_drawn(cell):
+        return 0.25 * sum(part.depth for part in halves_of(cell))
+    rigid = other.rigid_end if cell is not None and isinstance(other, FrameMember) else 0.0
     return float(rigid[end] if isinstance(rigid, tuple) else rigid)
 
 
-def elastic_kind(one: Any) -> FrameMember | None:
+def elastic_kind(cell: Any) -> FrameMember | None:
     """Return a member of the gross section, for the axial loads."""
-    if not is_drawn(one):
-        return one  # type: ignore[no-any-return]
-    parts = halves_of(one)
+    if not is_drawn(cell):
+        return cell  # type: ignore[no-any-return]
+    parts = halves_of(cell)
     modulus, inertia = parts[0].concrete_law["ec"], 0.5 * sum(part.inertia for part in parts)
     return FrameMember(modulus, 0.5 * sum(part.gross_area for part in parts), inertia)
 
 
 def _kind(
-    one: Any,
+    cell: Any,
     length: float,
     ends: tuple[float, float],
     load: float,
@@ -682,8 +683,8 @@ def _kind(
     where: Place,
     spans: tuple[Pair, Pair] | None = None,
 ) -> FrameMember | None:
-    if not is_drawn(one):
-        return one  # type: ignore[no-any-return]
+    if not is_drawn(cell):
+        return cell  # type: ignore[no-any-return]
     clear = length - sum(ends)
     if not clear > 0:
         raise InputError(
@@ -691,7 +692,7 @@ def _kind(
             "length"
         )
     try:
-        return _made(halves_of(one), clear, load, span_load, spans, ends)
+        return _made(halves_of(cell), clear, load, span_load, spans, ends)
     except InputError as error:
         raise InputError(f"frame: member {where.name}: {error}") from None
 
