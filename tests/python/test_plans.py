@@ -367,6 +367,7 @@ def planar():
             "motion 'swing 0 and swing 1': .*steps differ",
         ),
         (lambda h: rbsdem.ensemble(h, [[swings(0), swings(1)]]), "a list is not a motion"),
+        (lambda h: rbsdem.time_history(h, [swings(0)] * 3), "3 motions at once"),
         (lambda h: rbsdem.ida(h, [swings(0)], intensity="larger"), "'larger' is of pairs"),
         (
             lambda h: rbsdem.ensemble(h.changed(collapse="roof"), [(swings(0), swings(1))]),

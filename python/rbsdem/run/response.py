@@ -264,6 +264,10 @@ def time_history(
             )
         given |= {"ground_acceleration": time[0], "ground_acceleration_y": time[1]}
         time = None
+    if isinstance(time, (list, tuple)) and any(isinstance(one, GroundMotion) for one in time):
+        raise InputError(
+            f"time_history: {len(time)} motions at once; give one, or a tuple of two along x and y"
+        )
     time, arrays = acting(time, given, "time_history")
     loads = {name: _arguments.vector(values, name) for name, values in arrays.items()}
     for name, values in loads.items():

@@ -280,7 +280,7 @@ class PlanDrawing:
         cls : type
             `rbsdem.Building`.
         more : mapping
-            Its other drawn.
+            Its other arguments.
         """
         weights = self.weights()
         cells = {line: self.cells(line) for line in self.lines}
@@ -439,13 +439,9 @@ class Weights:
             if total > 0.0:
                 centre = np.array([weight @ x, weight @ y]) / total
                 spread = weight @ (second + (x - centre[0]) ** 2 + (y - centre[1]) ** 2) / total
-            mass = (
-                total / STANDARD_GRAVITY
-                if rule is not None
-                else floor_mass[i]
-                if floor_mass
-                else 0.0
-            )
+            mass = floor_mass[i] if floor_mass else 0.0
+            if rule is not None:
+                mass = total / STANDARD_GRAVITY
             rows.append((mass, *(centre + d.eccentricity * lengths), mass * spread))
         table = np.array(rows)
         return table[:, 0], table[:, 1:3], table[:, 3]
