@@ -129,9 +129,14 @@ def test_units_that_slip():
     ]:
         with pytest.raises(rbsdem.InputError, match=text):
             call()
+    with pytest.warns(AccuracyWarning, match="5 g"):
+        large = record.scaled(60.0)
     with pytest.warns(AccuracyWarning) as told:
-        rbsdem.time_history(frame, record.scaled(60.0), method="newmark", dt=0.01)
+        rbsdem.time_history(frame, large, method="newmark", dt=0.01)
     assert any("5 g" in str(each.message) for each in told)
+    # Beyond half of the height both notes are told: the unit, and what rotations err by.
+    with pytest.warns(AccuracyWarning, match=r"half of the height(.|\n)*2 th\^2/3"):
+        rbsdem.cyclic(frame, displacement=[2.0])
 
 
 @pytest.mark.parametrize(

@@ -306,6 +306,7 @@ def test_a_curve_that_ends_too_early_says_so(s3):
         assert not found.reached
         assert np.isnan(found.base_shear)
         assert "not reached" in repr(found)
+        assert "nan" not in repr(found)
 
 
 def test_a_falling_branch_without_lines_hides_no_point():

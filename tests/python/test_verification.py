@@ -41,5 +41,6 @@ def test_command(capsys, tmp_path):
     assert (tmp_path / "all.csv").read_text().count("SAP2000") == 8
     assert main(["verify", "nobody"]) == 2
     assert (
-        "there is no problem 'nobody'; there are Half-cycle sine pulse" in capsys.readouterr().err
+        "rbsdem: verify: there is no problem 'nobody'; there are Half-cycle sine pulse"
+        in capsys.readouterr().err
     )

@@ -189,9 +189,11 @@ class Target(Tabular):
         return data_frame(rows, ["figure", "value", "unit"])
 
     def __repr__(self) -> str:
-        end = "" if self.reached else f", not reached: the curve ends at {self.curve.largest:.4g} m"
+        end, force = "", f"base shear {self.base_shear:.4g} N, "
+        if not self.reached:
+            end, force = f", not reached: the curve ends at {self.curve.largest:.4g} m", ""
         return (
-            f"Target({self.method}, {self.displacement:.4g} m, base shear {self.base_shear:.4g} N, "
+            f"Target({self.method}, {self.displacement:.4g} m, {force}"
             f"period {self.curve.period:.3g} s elastic, {self.period:.3g} s effective, "
             f"ductility {self.ductility:.3g}{end})"
         )

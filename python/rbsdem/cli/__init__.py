@@ -121,7 +121,8 @@ def main(words: Sequence[str]) -> int:
     except KeyboardInterrupt as error:
         code, text = INTERRUPTED, str(error) or "interrupted"
     for line in text.splitlines():
-        tell(line, words[0])
+        # Functions that are commands name themselves.
+        tell(line.removeprefix(f"{words[0]}: "), words[0])
     _release_stdout()
     return code
 

@@ -241,7 +241,7 @@ def verify(names: tuple[str, ...], every: bool, output: str | None) -> int:
     verification = solve(list(names) or None)
     shown = verification if every else verification.worst()
     styles = [None if one.holds else "red" for one in shown.comparisons]
-    console(160).print(table(shown, styles=styles, fold=True))
+    console(160).print(table(shown, styles=styles))
     print(verification)
     if output is not None:
         verification.to_csv(output)

@@ -39,7 +39,7 @@ from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.accuracy import Answer, Errors, errors_of
 from rbsdem.run.solver import IMPLICIT, Solver
-from rbsdem.section.frame import Structure
+from rbsdem.section.frame import Frame, Structure
 
 #: First refinement of a method that was not run before: tolerance of rk45, and the part of the
 #: stable step of rk4. Then the tolerance is divided by 100, down to the least, or the step by 2.
@@ -312,8 +312,8 @@ class Effect:
     part : str
         The part that was changed.
     peak, moment, energy : float
-        Relative change of the peak response, of the peak base moment and of the energy that springs
-        and damping have taken by the end (the last relative to its largest value).
+        Relative change of the peak response, of the peak base moment (of a frame base shear) and of
+        the energy that springs and damping have taken by the end (relative to its largest value).
     residual : float
         Change of the response at the end over the peak response.
     history : float
@@ -379,7 +379,7 @@ class Physics(Tabular):
 
 
 #: A model with one part changed: its name, how to make it, a load that is left out.
-Variant: TypeAlias = tuple[str, Callable[[], Column], str]
+Variant: TypeAlias = tuple[str, Callable[[], Structure], str]
 
 
 def split_bodies(column: Column) -> Column:
@@ -411,9 +411,13 @@ def split_bodies(column: Column) -> Column:
     return replace(column, **parts)
 
 
-def variants(case: StudyCase, column: Column, axial: Spring | None) -> Iterator[Variant]:
+def variants(case: StudyCase, column: Structure, axial: Spring | None) -> Iterator[Variant]:
     """Yield the models to compare with; each has one part changed."""
     moving = not case.static
+    if isinstance(column, Frame):
+        yield from _variants_of_frame(column, moving=moving)
+    if not isinstance(column, Column):
+        return
     switches: list[tuple[object, str, dict[str, Any]]] = [
         (column.axial_load, "no axial load", {"axial_load": 0.0}),
         (column.self_weight, "no self-weight", {"self_weight": False}),
@@ -446,14 +450,27 @@ def variants(case: StudyCase, column: Column, axial: Spring | None) -> Iterator[
         yield f"{2 * column.n} bodies", lambda: split_bodies(column), ""
 
 
+def _variants_of_frame(frame: Frame, *, moving: bool) -> Iterator[Variant]:
+    """Yield the changes that every frame can take; sections and joints are the user's to draw."""
+    other = "pdelta" if frame.kinematics == "small" else "small"
+    parts: list[tuple[object, str, dict[str, Any]]] = [
+        (True, f"kinematics {other}", {"kinematics": other}),
+        (frame.panel, "nodes without panels", {"panel": None}),
+        (frame.losses, "no loss of members", {"losses": None}),
+        (moving and frame.damping, "no damping", {"damping": None}),
+    ]
+    for there, name, changes in parts:
+        if there:
+            yield name, partial(replace, frame, **changes), ""
+
+
 def find_physics(
     trials: MethodRuns, reference: Reference | None, tolerance: float | None, axial: Spring | None
 ) -> Physics | str:
     """Return the effect of each part of the model, or the reason why it is not known."""
-    column = trials.case.column
-    if not isinstance(column, Column):
+    several = list(variants(trials.case, trials.case.column, axial))
+    if not several:
         return ""
-    several = list(variants(trials.case, column, axial))
     weight = len(several) + TWICE_THE_BODIES + 1
     base = _base(trials, reference, trials.budget.left() / weight)
     if isinstance(base, str):

@@ -19,7 +19,7 @@ from rbsdem import _arguments, _core
 from rbsdem._files import Tabular, atomic_write
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, warn
 
 _MOST_DAMPING = 1.0
 # An oscillator takes a step of a twentieth of its period: shorter periods only cost time.
@@ -144,6 +144,12 @@ class GroundMotion:
                 faults.append(f"{who}: dt = {step:g} s must be above 0 and at most 10 s")
         _arguments.raise_faults(faults)
         values.flags.writeable = False
+        peak = float(np.abs(values).max())
+        if peak > _core.note_limits()[2]:
+            warn(
+                f"{who}: its peak is {peak / STANDARD_GRAVITY:.4g} g; no ground has moved with "
+                "more than 5 g, and accelerations are in m/s2"
+            )
         _arguments.put(self, acceleration=values, dt=step, name=name, description=description)
 
     @property

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 #: Letters of a line where standard output is no terminal.
 _WIDE = 200
-#: Widest column of text; what is longer is cut off. None is cut to less than the second.
-_WIDEST, _NARROWEST = 60, 6
+#: Widest column of text; what is longer goes over several lines. Words up to the second stay whole.
+_WIDEST, _LONGEST_WORD = 60, 20
 
 
 def write_parquet(frame: DataFrame, path: str | os.PathLike[str]) -> None:
@@ -47,7 +47,6 @@ def table(
     *,
     styles: Sequence[str | None] | None = None,
     caption: str | None = None,
-    fold: bool = False,
 ) -> Table:
     """Return a table for the terminal: mm, kN, kJ (or those of `plot.units`) and per cent.
 
@@ -62,8 +61,6 @@ def table(
         Style of each row, as `rich` names them.
     caption : str, optional
         Text below the table.
-    fold : bool, optional
-        Whether long texts go over several lines; else they are cut.
 
     Returns
     -------
@@ -74,12 +71,12 @@ def table(
     from rich.table import Table  # noqa: PLC0415
 
     class Printed(Table):
-        """A table that is its own text. Without room texts are cut, and never numbers."""
+        """A table that is its own text. Without room texts go over several lines, never numbers."""
 
         def __rich_console__(self, console: Any, options: Any) -> Any:
             widths, frame = list(widest), 3 * len(widest)
             while sum(widths) + frame > options.max_width and widths != least:
-                # Headings of numbers break before texts are cut.
+                # Headings of numbers break before texts do.
                 triples = zip(widths, least, are_numbers, strict=True)
                 spare = [(a > b and number, a - b) for a, b, number in triples]
                 widths[spare.index(max(spare))] -= 1
@@ -102,10 +99,10 @@ def table(
     for heading, numbers, texts in columns:
         width, figures = (max(map(len, [*words, ""])) for words in (heading.splitlines(), texts))
         widest.append(max(width, figures) if numbers else min(max(width, figures), _WIDEST))
-        shortest = max(map(len, heading.split()), default=0)
-        least.append(max(shortest, figures) if numbers else min(widest[-1], _NARROWEST))
-        look: Any = {"no_wrap": not fold, "overflow": "fold" if fold else "ellipsis"}
-        look = {"justify": "right"} if numbers else look
+        words = heading.split() + ([] if numbers else " ".join(texts).split())
+        shortest = max(map(len, words), default=0)
+        least.append(max(shortest, figures) if numbers else min(shortest, _LONGEST_WORD))
+        look: Any = {"justify": "right"} if numbers else {"overflow": "fold"}
         made.add_column(heading, **look)
     for at, row in enumerate(zip(*(texts for _, _, texts in columns), strict=True)):
         made.add_row(*map(plain, row), style=styles[at] if styles else None)
