@@ -107,6 +107,7 @@ contains
                          near, count)
    end subroutine go_along
 
+   !> The loops of `go_along` on bare arrays, from which the compiler makes vector instructions.
    pure subroutine advance_along(n, q, rate, stride, slack, d0, f0, k, unload_on_reversal, d, work, lower, &
                                  upper, near, count)
       integer, intent(in) :: n, unload_on_reversal(n)

@@ -236,7 +236,7 @@ def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, 
 
 
 def _check_peak(values: Sequence[tuple[float, str]], motion: GroundMotion, path: str) -> None:
-    """Refuse a unit that the user gave, if a value that the file states with its unit is far off.
+    """Refuse the unit of the user where the file states a peak, with its unit, that is far off.
 
     Peaks of other components and of the uncorrected record are within a factor of five.
     """

@@ -414,7 +414,7 @@ def _half(
 
 
 def _check_own(model: LayeredModel) -> None:
-    """Refuse parameters that a user gave, beyond what they can change in a column."""
+    """Refuse values of parameters that a user gave and that a column cannot have."""
     # Those of another version are meant for all columns, and are cut to the limits of each.
     if model.parameters.version == VERSION and model.parameters is not _of_beams():
         model.check(model.parameters.own)

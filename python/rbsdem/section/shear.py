@@ -600,7 +600,7 @@ def _side(
     stiffness: float,
     given: ModelParameters,
 ) -> _Side:
-    """Return the spring of a length where y > 0 is in tension, with its strength of a span M/V."""
+    """Return the shear spring of a length with y > 0 in tension; `span` is M/V for its strength."""
     sizes = shear_sizes(section)
     wall = section.shape == "wall"
     strut = axial_strut(section, span, axial_load, shortest=0.0 if wall else SQUAT)

@@ -451,8 +451,8 @@ contains
          end do
       end subroutine any_motion
 
-      !> A number between two bounds, a power of two while they are far apart. `more` is false when there is
-      !> no number between them.
+      !> The number that halves an interval, or its exponents while the bounds are far apart: few steps then
+      !> cross many decades. `more` is false when there is no number between the bounds.
       subroutine split(below, above, between)
          real(wp), intent(in) :: below, above
          real(wp), intent(out) :: between
