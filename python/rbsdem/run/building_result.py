@@ -13,19 +13,13 @@ from rbsdem import _arguments
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.run.accuracy import ErrorEstimate, Errors
-from rbsdem.run.frame_result import FrameResult
+from rbsdem.run.frame_result import CHANNELS, OF_NODES, FrameResult, owners
 from rbsdem.run.limit_states import LimitStates
 from rbsdem.run.rows import Result
 from rbsdem.section.plan import Building, Plane
 
-#: Channels of the nodes, of the members and of the springs of a building, and kinds of the last.
-_OF_NODES = ("x", "y", "node_rotation", "node_acceleration")
+#: Channels of the members and of the floors of a building.
 _OF_MEMBERS = ("member_axial", "moment_from", "moment_to", "lost")
-_OF_SPRINGS = {
-    "flexure": ("rotation", "moment"),
-    "shear": ("slip", "shear"),
-    "axial_spring": ("opening", "axial_force"),
-}
 _OF_FLOORS = ("floor_x", "floor_y", "floor_rotation")
 #: Figures of a run that name a member of the building by its number.
 _OF_ONE_MEMBER = ("snap_member", "fallen_member", "snap_time")
@@ -182,7 +176,7 @@ class BuildingResult(Result):
         channels["base_shear"] = self.plane_shear[:, number]
         of_node = {node: i for i, node in enumerate(parts.nodes)}
         at = [of_node.get(prefix + node, -1) for node in frame.parts.nodes]
-        for name in _OF_NODES:
+        for name in OF_NODES:
             if name in channels:
                 # The last is none of the frame: a foot without a column.
                 padded = np.column_stack((channels[name], np.zeros(self.time.size)))
@@ -191,7 +185,7 @@ class BuildingResult(Result):
         for name in _OF_MEMBERS:
             if name in channels:
                 channels[name] = channels[name][:, own]
-        for group, pair in _OF_SPRINGS.items():
+        for group, pair in CHANNELS.items():
             springs = parts.springs_of(group)
             own = [i for i, one in enumerate(springs) if one.member.startswith(prefix)]
             for name in pair:
@@ -253,28 +247,15 @@ class BuildingResult(Result):
         return found
 
     def _owners(self, channel: str) -> Sequence[object]:
-        building, parts = self.building, self.building.parts
         if channel in _OF_FLOORS:
-            return range(1, len(building.storey_heights) + 1)
+            return range(1, len(self.building.storey_heights) + 1)
         if channel == "plane_shear":
-            return [plane.name for plane in building.planes]
-        if channel in _OF_NODES:
-            return parts.nodes
-        groups = [group for group, pair in _OF_SPRINGS.items() if channel in pair]
-        springs = parts.springs_of(groups[0]) if groups else []
-        return [f"{one.member}_{one.position:g}" for one in springs] if groups else parts.members
+            return [plane.name for plane in self.building.planes]
+        return owners(self.building.parts, channel)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out the frames: they are cut anew."""
         return {k: v for k, v in super().__getstate__().items() if k != "_frames"}
-
-    def __repr__(self) -> str:
-        about = self.summary
-        return (
-            f"BuildingResult({about['method']}, {self.time.size} rows, {about['status']}, "
-            f"peak displacement {about['peak_displacement']:.4g} m, "
-            f"peak base shear {about['peak_base_shear']:.4g} N)"
-        )
 
 
 def _beyond_yield(result: FrameResult) -> dict[tuple[str, float], Array]:

@@ -15,7 +15,7 @@ from rbsdem._files import data_frame, text_table
 from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import FrameSpring, MemberGeometry, index_of
+from rbsdem.model.frame import FrameParts, FrameSpring, MemberGeometry, index_of
 from rbsdem.model.springs import Landmark, LandmarkName
 from rbsdem.run.limit_states import LimitState, LimitStates
 from rbsdem.run.rows import Result
@@ -23,8 +23,9 @@ from rbsdem.section.criteria import Criterion, joint_criteria
 from rbsdem.section.frame import Frame
 from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
 
-#: Names of the springs' deformations and forces in rows, by group.
-_CHANNELS = {
+#: Channels of nodes, and those of the springs' deformations and forces by group.
+OF_NODES = ("x", "y", "node_rotation", "node_acceleration")
+CHANNELS = {
     "flexure": ("rotation", "moment"),
     "shear": ("slip", "shear"),
     "axial_spring": ("opening", "axial_force"),
@@ -157,7 +158,7 @@ class FrameResult(Result):
     @property
     def springs(self) -> dict[str, Array]:
         """Deformations and forces of the springs, by the names of their channels."""
-        names = [name for pair in _CHANNELS.values() for name in pair]
+        names = [name for pair in CHANNELS.values() for name in pair]
         return {name: self.channels[name] for name in names if name in self.channels}
 
     @property
@@ -442,7 +443,7 @@ class FrameResult(Result):
         springs = self.springs
         return [
             (spring, springs[deformation][:, i], springs[force][:, i])
-            for group, (deformation, force) in _CHANNELS.items()
+            for group, (deformation, force) in CHANNELS.items()
             for i, spring in enumerate(self.frame.parts.springs_of(group))
         ]
 
@@ -608,20 +609,16 @@ class FrameResult(Result):
         }
 
     def _owners(self, channel: str) -> Sequence[object]:
-        parts = self.frame.parts
-        if channel in ("x", "y", "node_rotation", "node_acceleration"):
-            return parts.nodes
-        groups = [group for group, pair in _CHANNELS.items() if channel in pair]
-        springs = parts.springs_of(groups[0]) if groups else []
-        return [f"{one.member}_{one.position:g}" for one in springs] if groups else parts.members
+        return owners(self.frame.parts, channel)
 
-    def __repr__(self) -> str:
-        about = self.summary
-        return (
-            f"FrameResult({about['method']}, {self.time.size} rows, {about['status']}, "
-            f"peak displacement {about['peak_displacement']:.4g} m, "
-            f"peak base shear {about['peak_base_shear']:.4g} N)"
-        )
+
+def owners(parts: FrameParts, channel: str) -> Sequence[object]:
+    """Return the names of the nodes, members or springs that a channel has columns for."""
+    if channel in OF_NODES:
+        return parts.nodes
+    groups = [group for group, pair in CHANNELS.items() if channel in pair]
+    springs = parts.springs_of(groups[0]) if groups else []
+    return [f"{one.member}_{one.position:g}" for one in springs] if groups else parts.members
 
 
 def _first_row(beyond: Array) -> float | None:

@@ -520,7 +520,8 @@ class Result(_Channels):
             file.write((head + "\n".join(map(_text, state)) + "\n").encode())
 
     def __repr__(self) -> str:
-        about, key = self.summary, "peak_base_shear" if self.dynamic else "peak_force"
+        about = self.summary
+        key = "peak_force" if self._is_column and not self.dynamic else "peak_base_shear"
         return (
             f"{type(self).__name__}({about['method']}, {self.time.size} rows, {about['status']}, "
             f"peak displacement {about['peak_displacement']:.4g} m, "
