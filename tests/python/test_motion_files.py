@@ -311,7 +311,8 @@ STATED = {
               "# cm/(s^2)", "unit cm s^-2", "3 channels, in Gal", "units: gal/kine/cm",
               "UNITS=cm/s2/cm/s/cm", "Einheit: Gal", "Unité: cm/s²",
               "cm·s⁻²", "Ускорение (см/с2)"],
-    "g": ["# Unidad: g", "units: G", "UNITS: (g)", "Acc/Vel/Disp: g / cm/s / cm", "Einheit = g",
+    "g": ["# Unidad: g", "fractions of gravity", "UNITS OF GRAVITY",
+          "units: G", "UNITS: (g)", "Acc/Vel/Disp: g / cm/s / cm", "Einheit = g",
           "Acc/Vel/Disp: g/cm/s/cm", "# acc in g's", "in units of g, filtered", "# amplitudes [g]"],
 }  # fmt: skip
 
@@ -326,7 +327,8 @@ def test_a_part_of_a_unit_is_refused(line):
 
 @pytest.mark.parametrize(
     "line",
-    ["fs=200", "Abtastrate 200", "Pas de temps 0.005", "sampling: 200", "1/200 s", "DELTA 0.005",
+    ["fs=200", "SR=200", "Abtastrate 200", "Pas de temps 0.005", "sampling: 200", "1/200 s",
+     "DELTA 0.005",
      "Tasa de muestreo 200", "Zeitschritt 0.005", "passo 0.005", "Interval: 0.005", "Δt = 0.005",
      "tstep 0.005", "digitized at 200", "bandpass 0.1-25 Hz, 200 sps"],
 )  # fmt: skip

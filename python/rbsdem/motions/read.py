@@ -125,7 +125,7 @@ _MARKS = str.maketrans("", "", "0123456789+-.eE \t")
 # other number of seconds or Hz that may be one is asked for, where it is not what is used.
 _UNIT = re.compile(
     rf"(?<![a-z]){_PER_SECOND_SQUARED}|(?<![a-z])gals?(?![a-z])"
-    rf"|(?:(?<=[(\[,:=/])\s*|\b(?:in|of|en|units?)\s+|_|(?<=\d)\s*)g(?:'?s)?"
+    rf"|(?:(?<=[(\[,:=/])\s*|\b(?:in|of|en|units?)\s+|_|(?<=\d)\s*)g(?:'?s|ravity)?"
     r"(?=\s*(?:[)\],;.:=/*x]|$|\s\())"
 )
 _NUMBER_BEFORE = re.compile(rf"(?<![\w.])({_NUM})\s*[x*×]?\s*$")
@@ -157,7 +157,7 @@ _TIMED = re.compile(
 #: A number without a unit behind what may be a word for a step or a rate.
 _HINTED = re.compile(
     r"(?:(?:sampl|muestr|abtast|chantill|campion|amostr|orne|step|schritt|interv|aralig|passo?\b|paso"
-    r"|pas de temps|delta\b|δt|\bfs\b|\bfreq|rate\b|digiti[sz])[^\d.+-]{0,24}?"
+    r"|pas de temps|delta\b|δt|\bfs\b|\bsr\b|\bfreq|rate\b|digiti[sz])[^\d.+-]{0,24}?"
     rf"|(?<![\w.])1\s*/)\s*({_NUM})(?![\d.]|\s*(?!s(?:ec)?\b)[-a-z/%])"
 )
 #: Numbers of other things: how many values there are.
@@ -216,7 +216,7 @@ def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, 
         known = False
         for match in _UNIT.finditer(text):
             word = re.sub(r"^(?:_|in\s|of\s|en\s|units?\s)?\s*", "", match[0])
-            unit, known = unit_named(word), True
+            unit, known = unit_named(word.replace("gravity", "g")), True
             beside = _NUMBER_BEFORE.search(text[: match.end() - len(word)])
             beside = beside or _NUMBER_BEHIND.match(text[match.end() :])
             if beside:
