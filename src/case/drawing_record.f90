@@ -10,7 +10,7 @@ module rbs_case_drawing_record
    use rbs_structure_column_column_record, only: most_bodies
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_section_confinement, only: no_ties, spiral, ties
-   use rbs_section_section_record, only: append_steel, boundary_record, find_steel, no_steel, &
+   use rbs_section_section_record, only: append_steel, boundary_record, find_steel, add_no_steel, &
                                          section_record
    use rbs_section_shape, only: bar_size
    implicit none
@@ -343,7 +343,7 @@ contains
          if (allocated(self%layout) .or. allocated(self%section%bars%y)) then
             call messages%add('row: there are bars or a layout too; give one of them')
          else if (is_given(self%rows(i)%steel) .and. find_steel(self%section, self%rows(i)%steel) == 0) then
-            call messages%add('row: steel'//no_steel(self%rows(i)%steel))
+            call add_no_steel(messages, 'row: steel', self%rows(i)%steel)
          else if (self%rows(i)%face == 'side' .and. count(self%rows(:i)%face == 'side') > 1) then
             call messages%add("row: face = 'side' appears twice; it may appear once")
          end if
@@ -355,7 +355,7 @@ contains
             call messages%add("curtain: it is for shape = 'wall'; remove it")
          end if
          if (find_steel(self%section, self%curtains(i)%steel) == 0) then
-            call messages%add('curtain: steel'//no_steel(self%curtains(i)%steel))
+            call add_no_steel(messages, 'curtain: steel', self%curtains(i)%steel)
          end if
       end do
       do i = 1, size(self%parameters)
@@ -385,11 +385,11 @@ contains
       call layout%check(name, messages, sound)
       if (.not. sound) return
       if (find_steel(section, layout%steel) == 0) then
-         call messages%add(name//': steel'//no_steel(layout%steel))
+         call add_no_steel(messages, name//': steel', layout%steel)
       end if
       if (.not. is_given(layout%between_steel)) return
       if (find_steel(section, layout%between_steel) == 0) then
-         call messages%add(name//': between_steel'//no_steel(layout%between_steel))
+         call add_no_steel(messages, name//': between_steel', layout%between_steel)
       end if
    end subroutine check_layout
 

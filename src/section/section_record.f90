@@ -14,7 +14,8 @@ module rbs_section_section_record
    implicit none
    private
 
-   public :: section_record, bars_record, hoops_record, boundary_record, append_steel, find_steel, no_steel
+   public :: section_record, bars_record, hoops_record, boundary_record, append_steel, find_steel, &
+             add_no_steel
 
    integer, parameter :: most_bars = 100000
 
@@ -195,7 +196,7 @@ contains
                call messages%add('boundary: hoop_spacing is missing; give it a value in m')
             end if
             if (find_steel(self, boundary%steel) == 0) then
-               call messages%add('boundary: steel'//no_steel(boundary%steel))
+               call add_no_steel(messages, 'boundary: steel', boundary%steel)
             end if
          end associate
       end do
@@ -212,7 +213,7 @@ contains
       integer :: i
 
       if (self%hoops%kind /= no_ties .and. find_steel(self, self%hoops%steel) == 0) then
-         call messages%add(trim(self%hoops%name())//': steel'//no_steel(self%hoops%steel))
+         call add_no_steel(messages, trim(self%hoops%name())//': steel', self%hoops%steel)
       end if
       if (.not. allocated(self%bars%y)) return
       if (.not. (allocated(self%bars%area) .and. allocated(self%bars%steel))) then
@@ -222,7 +223,7 @@ contains
       else
          do i = 1, size(self%bars%steel)
             if (find_steel(self, self%bars%steel(i)) > 0) cycle
-            call messages%add('bars: steel('//to_text(i)//')'//no_steel(self%bars%steel(i)))
+            call add_no_steel(messages, 'bars: steel('//to_text(i)//')', self%bars%steel(i))
             return
          end do
       end if
@@ -239,13 +240,15 @@ contains
       number = 0
    end function find_steel
 
-   !> The end of the message on an id that no steel has.
-   pure function no_steel(id) result(text)
+   !> The message on a key that names a steel which is not there.
+   subroutine add_no_steel(messages, key, id)
+      type(message_list), intent(inout) :: messages
+      character(len=*), intent(in) :: key
       integer, intent(in) :: id
-      character(len=:), allocatable :: text
 
-      text = ' = '//to_text(id)//' is not the id of a steel of the section; correct it, or add that steel'
-   end function no_steel
+      call messages%add(key//' = '//to_text(id)// &
+                        ' is not the id of a steel of the section; correct it, or add that steel')
+   end subroutine add_no_steel
 
    !> One more steel, without values.
    subroutine append_steel(self)

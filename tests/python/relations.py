@@ -90,6 +90,8 @@ def relation(
 
         test.__name__ = judge.__name__
         test.__doc__ = judge.__doc__
+        # The one in `RELATIONS` may be of another module, whose relation has this name too.
+        test.outcome = RELATIONS[judge.__name__]  # type: ignore[attr-defined]
         return test
 
     return make

@@ -89,7 +89,7 @@ def test_the_state_of_the_case(
     assert float(row["residual_displacement"]) == pytest.approx(expected.displacement[-1], 1e-5)
     case.write_text(text + "&loading drive = 'force', values = 0, 1e3, time = 0, 1 /\n")
     assert command(monkeypatch, case, "--out", out) == 2
-    assert "an ensemble takes horizontal ground motions only, no force" in capsys.readouterr().err
+    assert "takes the ground motion along x of a case, no force" in capsys.readouterr().err
 
 
 def test_parts(
