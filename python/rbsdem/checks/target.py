@@ -492,16 +492,13 @@ class Capacity(Tabular):
         members have cracked, with the stiffness of the method for a yield force as at the end.
         """
         curve = Envelope(1, self.displacement, self.force)
-        if end > self.first_yield * (1.0 + 1e-12):
+        if self.yields(end):
             return curve.idealise(method, end=min(end, self.largest))  # type: ignore[arg-type]
         stiffness = self.slope
         if end > self.elastic * (1.0 + 1e-12):
             if method == "asce_41":
                 force = 0.6 * self.force_at(end)
-                i = int(np.flatnonzero(self.force >= force)[0])
-                stiffness = force / float(
-                    np.interp(force, self.force[i - 1 : i + 1], self.displacement[i - 1 : i + 1])
-                )
+                stiffness = force / curve.displacement_at(force / curve.peak_force)
             else:
                 stiffness = curve.idealise(method, end=end).stiffness  # type: ignore[arg-type]
         upto = slice(int(np.searchsorted(self.displacement, self.first_yield)) + 1)  # before a fall
@@ -512,8 +509,11 @@ class Capacity(Tabular):
 
     def ductility(self, displacement: float, lines: Idealisation, end: float) -> float:
         """Return a displacement over that at yield, with lines up to an end [m]."""
-        elastic = end <= self.first_yield * (1.0 + 1e-12)
-        return displacement / (self.first_yield if elastic else lines.yield_displacement)
+        return displacement / (lines.yield_displacement if self.yields(end) else self.first_yield)
+
+    def yields(self, end: float) -> bool:
+        """Return whether a member yields before an end of the lines [m], beyond round-off."""
+        return end > self.first_yield * (1.0 + 1e-12)
 
     @cached_property
     def slope(self) -> float:
@@ -585,7 +585,7 @@ def asce_41(
 
     def demand(end: float) -> tuple[float, Idealisation, float, float]:
         lines = curve.idealise("asce_41", end)
-        elastic = end <= curve.first_yield * (1.0 + 1e-12)
+        elastic = not curve.yields(end)
         period = curve.period * math.sqrt(curve.stiffness / lines.stiffness)
         sa = spectrum.sa(period)
         usual = codes.mass_factor(curve.storeys, period)
@@ -711,8 +711,8 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
         period = 2.0 * math.pi * math.sqrt(curve.modal_mass * at / force)
         sa, elastic = spectrum.sa(period), spectrum.sd(period)
         strength = sa * curve.modal_mass / force
-        yields = strength if end > curve.first_yield * (1.0 + 1e-12) else 1.0
-        reached = target_of_one_mass(elastic, yields, period, spectrum.corner)
+        reduction = strength if curve.yields(end) else 1.0
+        reached = target_of_one_mass(elastic, reduction, period, spectrum.corner)
         values.update({"T*": period, "q_u": strength, "d_et*": elastic, "d_t*": reached})
         return curve.gamma * reached
 

@@ -87,8 +87,22 @@ def column(
     shear_span: float | None = None,
 ) -> LayeredColumn: ...
 @overload
-def column(section: Section, height: float, *, model: Model, **options: Any) -> Column: ...
-def column(  # type: ignore[misc]
+def column(
+    section: Section,
+    height: float,
+    *,
+    axial_load: float,
+    mass: float | None = None,
+    n: int | None = None,
+    model: Model,
+    model_parameters: ModelParameters | None = None,
+    axial_height: float | None = None,
+    restrained: int | None = None,
+    round_core: bool = False,
+    top: Top = "free",
+    footing: Footing | None = None,
+) -> Column: ...
+def column(
     section: Section,
     height: float,
     *,
