@@ -46,22 +46,3 @@ def test_layers_share_the_load_itself():
     d = 0.02
     force = rbsdem.cyclic(column, displacement=[0.0, d]).force[-1]
     assert force * HEIGHT + LOAD * 4.0 * d / HEIGHT == pytest.approx(0.15 * LOAD, rel=1e-4)
-
-
-def test_a_history_of_the_load_acts_there_too():
-    t = np.linspace(0.0, 2.0, 201)
-    ground = 1.5 * np.sin(2 * np.pi * t)
-    common = {"time": t, "ground_acceleration": ground, "method": "rk4", "dt": 2e-4}
-    constant = rbsdem.time_history(column(axial_height=2.6), **common)
-    history = rbsdem.time_history(
-        column(axial_height=2.6, axial_load=0.0), **common, axial_load=np.full(t.size, LOAD)
-    )
-    assert history.displacement == pytest.approx(constant.displacement, rel=1e-9, abs=1e-12)
-
-
-def test_it_comes_back_from_a_case_file(tmp_path):
-    given = column(axial_height=2.5)
-    (tmp_path / "case.nml").write_text(
-        given.to_namelist() + "&loading drive = 'displacement', values = 0.0, 0.01 /\n"
-    )
-    assert rbsdem.read_case(tmp_path / "case.nml").column == given

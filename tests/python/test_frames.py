@@ -81,21 +81,6 @@ def test_limit_loads_of_a_portal_are_the_least_of_three_mechanisms(v):
     assert peak == pytest.approx(min(mechanisms), rel=1e-12)
 
 
-def test_dead_load_on_a_clamped_beam():
-    """w l^2/12 at the ends of one elastic member, and it only bends."""
-    w, span = 2e4, 6.0
-    nodes = [FrameNode("a", 0, 0, "fixed"), FrameNode("b", span, 0, "fixed")]
-    nodes += [FrameNode("c", 0, 3.0, push_x=1.0)]
-    kind = FrameMember(E, A, INERTIA)
-    members = [Member("beam", "a", "b", kind, load=w), Member("post", "a", "c", kind)]
-    frame = Frame(nodes=nodes, members=members, pattern="nodes")
-    still = rbsdem.cyclic(frame, displacement=[0.0])
-    assert still.member("beam").moment[0] == pytest.approx(
-        [-w * span**2 / 12, w * span**2 / 12], rel=1e-12
-    )
-    assert still.member("post").moment[0] == pytest.approx([0, 0], abs=1e-6)
-
-
 @pytest.mark.parametrize("kinematics", ["small", "pdelta"])
 @pytest.mark.parametrize("seed", range(8))
 def test_reactions_are_the_loads(seed, kinematics):
@@ -203,56 +188,6 @@ def test_a_beam_of_two_members_is_exact_under_axial_load(axial, yields):
     assert still.displacement[0] == pytest.approx(-sag, rel=1e-9)
 
 
-def euler(ends: str) -> tuple[Frame, float]:
-    """Return one member between two ends under 1 N, and its critical load."""
-    length = 5.0
-    kind = FrameMember(E, 1e3 * A, INERTIA)
-    factor = {"pinned": np.pi**2, "fixed": 20.190728556426629}[ends]
-    nodes = [FrameNode("a", x=0, y=0, support=ends)]
-    nodes += [FrameNode("b", x=length, y=0, support="roller", load_x=-1.0, inertia=1.0, mass=1.0)]
-    rows = [Member("ab", "a", "b", kind)]
-    frame = Frame(nodes=nodes, members=rows, kinematics="pdelta", pattern="uniform")
-    return frame, factor * E * INERTIA / length**2
-
-
-def portal(base: str) -> tuple[Frame, float]:
-    """Return a portal under 1 N on each column, and the load at which it sways."""
-    height, span = 4.0, 6.0
-    kind = FrameMember(E, 1e4 * A, INERTIA)
-    beam = FrameMember(E, 1e4 * A, 0.5 * INERTIA)
-    top = [FrameNode(f"N-{i}-1", load_y=-1.0, mass=1.0) for i in (1, 2)]
-    frame = Frame.grid([height], [span], columns=kind, beams=beam, base=base, nodes=top,
-                       kinematics="pdelta")  # fmt: skip
-    ratio = 6 * 0.5 * height / span  # of the beam, bent to an S, to E I/h of a column
-    # phi tan phi = ratio on pins, -phi/tan phi = ratio on fixed feet
-    low, high = (1e-9, np.pi / 2 - 1e-9) if base == "pinned" else (np.pi / 2, np.pi - 1e-9)
-    for _ in range(200):
-        phi = (low + high) / 2
-        value = phi * np.tan(phi) if base == "pinned" else -phi / np.tan(phi)
-        low, high = (phi, high) if value < ratio else (low, phi)
-    return frame, phi**2 * E * INERTIA / height**2
-
-
-@pytest.mark.parametrize(
-    ("make", "given"), [(euler, "pinned"), (euler, "fixed"), (portal, "pinned"), (portal, "fixed")]
-)
-def test_critical_loads_of_one_member_a_column(make, given):
-    """Just below it the first frequency is all but zero, just above it the frame does not stand."""
-    frame, critical = make(given)
-
-    def under(load: float) -> Frame:
-        loaded = [
-            replace(node, load_x=load * node.load_x, load_y=load * node.load_y)
-            for node in frame.nodes
-        ]
-        return replace(frame, nodes=loaded)
-
-    squares = [rbsdem.modes(under(share * critical), 1).omega[0] ** 2 for share in (0.9, 1 - 1e-5)]
-    assert 0 < squares[1] < 2e-4 * squares[0]
-    with pytest.raises(rbsdem.SolveError):
-        rbsdem.modes(under((1 + 1e-5) * critical), 1)
-
-
 @pytest.mark.parametrize("seed", range(6))
 def test_a_pressed_frame_is_the_same_however_its_columns_are_divided(seed):
     """Random elastic frames up to near their critical load; modes are those of the matrices."""
@@ -302,23 +237,6 @@ def test_a_mechanism_falls_by_its_chords():
     for force, top in zip(push.force[-3:], push.displacement[-3:], strict=True):
         # The axial forces of the columns do not change; their sum is the load.
         assert force == pytest.approx((4 * plastic - 2 * axial * top) / height, rel=1e-9)
-
-
-def test_a_frame_of_rigid_beams_is_the_shear_building():
-    """Two storeys on columns of 12 E I/h^3: the periods of two masses by hand, all mass in them."""
-    h, mass = 3.0, 4e4
-    column = FrameMember(E, 1e4, INERTIA)
-    beam = FrameMember(E, 1e6, 1e6)
-    frame = Frame.grid([h, h], [5.0], columns=column, beams=beam, floor_mass=mass, diaphragm=True)
-    k = 2 * 12 * E * INERTIA / h**3
-    exact = np.sqrt(np.linalg.eigvalsh(np.array([[2 * k, -k], [-k, k]]) / mass))
-    modes = rbsdem.modes(frame, 2)
-    assert modes.omega == pytest.approx(exact, rel=1e-6)
-    assert modes.participation.sum() == pytest.approx(1, abs=1e-6)
-    matrices = rbsdem.matrices(frame)
-    shape = np.linalg.solve(matrices.stiffness, matrices.mass @ np.ones(len(matrices.unknowns)))
-    quotient = (shape @ matrices.stiffness @ shape) / (shape @ matrices.mass @ shape)
-    assert exact[0] ** 2 <= quotient * (1 + 1e-6)
 
 
 def test_a_rigid_member_is_a_word(tmp_path):
@@ -629,16 +547,6 @@ def test_floors_that_are_alike_are_one_statement(tmp_path):
     push = rbsdem.pushover(frame, drift=0.01)
     push.save(tmp_path / "push.npz")
     assert rbsdem.read_result(tmp_path / "push.npz") == push
-
-
-def test_a_frame_of_drawings_comes_back(tmp_path):
-    """Layers stand once in the text, by their kinds and places."""
-    column = rbsdem.section.member(drawn(0.4), 3.2, axial_load=400e3)
-    beam = rbsdem.section.member(drawn(0.5), 6.0)
-    frame = Frame.grid([3.2], [6.0], columns=column, beams=beam)
-    loading = "&loading drive = 'displacement', values = 0, 0.01 /\n"
-    (tmp_path / "case.nml").write_text(frame.to_namelist() + loading)
-    assert rbsdem.read_case(tmp_path / "case.nml").column == frame
 
 
 @pytest.mark.parametrize("seed", range(20))

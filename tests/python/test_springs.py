@@ -52,28 +52,6 @@ def response(spring: Any, path: ArrayLike) -> Array:
     return spring.response(np.asarray(path, dtype=float))
 
 
-@pytest.mark.parametrize("inner", INNER)
-def test_takeda_s2_lines_between_the_points(inner: str) -> None:
-    first, second = FC + KY * (1e-3 - DC), FC + KY * (1.5e-3 - DC)
-    k_1 = (first + FC) / (1e-3 + DC)
-    k_2 = (second + FC) / (1.5e-3 + DC)
-    zero = -1.5e-3 + second / k_2
-    path = [1e-3, 0.0, -DC, -1.5e-3, -1e-3, zero, 0.5e-3, 1e-3, 1.2e-3]
-    by_hand = [
-        first,
-        first - k_1 * 1e-3,  # toward the opposite cracking point
-        -FC,
-        -second,
-        -second + k_2 * 0.5e-3,
-        0,
-        first / (1e-3 - zero) * (0.5e-3 - zero),  # to the peak: steeper than to the yield point
-        first,
-        FC + KY * (1.2e-3 - DC),  # and on along the backbone
-    ]
-    force = response(Takeda(**COLUMN_1, inner=inner), path)
-    np.testing.assert_allclose(force, by_hand, rtol=1e-9, atol=1e-9 * FY)
-
-
 # F_c = 1, F_y = 2.5, K_0 = 0.5
 ROUND = {"k_c": 1.0, "d_c": 1.0, "k_y": 0.3, "d_y": 6.0, "k_u": 0.01}
 
