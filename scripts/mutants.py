@@ -319,7 +319,9 @@ def check_unchanged(tree: Tree, results: dict[str, dict[str, str]]) -> None:
     for found in results.values():
         file, failed = found["suite"], found["test"].partition("[")[0]
         if file.endswith(".py"):
-            tests.add(("" if "/" in file else "tests/python/") + f"{file}::{failed}")
+            # A file that a mutant keeps from being imported names no test.
+            path = file if "/" in file else f"tests/python/{file}"
+            tests.add(f"{path}::{failed}" if failed else path)
     if not name and tests:
         name, test = tree.fails_python(*sorted(tests))
     if name:
