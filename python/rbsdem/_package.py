@@ -1,4 +1,4 @@
-"""The installation: files of the package, its code, its commands, packages of the extras."""
+"""The installation: files of the package, its code, its commands."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
-from importlib import import_module, resources
+from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from rbsdem.errors import AccuracyWarning, InputError
 
@@ -71,20 +70,6 @@ COMMANDS = dict.fromkeys(
     "verify": "rbsdem.cli.measured",
     "completion": "rbsdem.cli",
 }
-
-#: Extra of each package.
-_EXTRAS = {"pyarrow": "parquet", "distributed": "cluster"}
-
-
-def extra(module: str) -> Any:
-    """Return a module of an extra, or raise `ImportError` with the installation command."""
-    package = module.partition(".")[0]
-    try:
-        return import_module(module)
-    except ImportError as error:
-        raise ImportError(
-            f'{package} is not installed: pip install "rbsdem[{_EXTRAS[package]}]"'
-        ) from error
 
 
 @contextmanager

@@ -16,7 +16,7 @@ import pytest
 from conftest import REPOSITORY
 
 import rbsdem
-from rbsdem import _package, errors, springs
+from rbsdem import errors, springs
 
 PUBLIC = [getattr(rbsdem, name) for name in rbsdem.__all__] + [
     thing
@@ -119,17 +119,6 @@ def test_package_works_from_a_folder_with_files_of_its_name(tmp_path):
         check=False,
     )
     assert result.stdout == f"rbsdem {rbsdem.__version__}\n"
-
-
-def test_extra_that_is_missing_is_named(monkeypatch):
-    """The line for pip names an extra that pyproject.toml has, and docs/install.md knows it."""
-    for name in ("pyarrow", "pyarrow.parquet"):  # another test may have loaded both
-        monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(ImportError, match=r'not installed: pip install "rbsdem\[parquet\]"'):
-        _package.extra("pyarrow.parquet")
-    project = (REPOSITORY / "pyproject.toml").read_text()
-    assert re.search(r'^parquet = \["pyarrow>=', project, re.M)
-    assert ".[parquet]" in (REPOSITORY / "docs/install.md").read_text()
 
 
 def test_a_warning_names_the_line_of_the_caller():

@@ -20,7 +20,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._files import claim_folder, data_frame, refuse_other_page, save_frame, write_figure
-from rbsdem._package import extra, recorded
+from rbsdem._package import recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
@@ -406,7 +406,6 @@ def _part(text: str) -> tuple[int, int]:
 @_jobs
 @click.option("--out", type=FOLDER, metavar="DIR", help="folder for the files and the runs")
 @_shard
-@click.option("--parquet", is_flag=True, help="write the runs as Parquet too")
 @quiet
 def ida(
     case: Path,
@@ -421,7 +420,6 @@ def ida(
     jobs: int | None,
     out: Path | None,
     shard: str | None,
-    parquet: bool,
     quiet: bool,
     **method: Any,
 ) -> int:
@@ -434,17 +432,13 @@ def ida(
 
     \b
     Files (--out): store/ (finished runs, from which a second start goes on), ida.csv (one row per
-    run), fractiles.csv, fragility.csv, ida.png, fragility.png; with --parquet ida.parquet.
+    run), fractiles.csv, fragility.csv, ida.png, fragility.png.
     In a job array, give every job the same command with --shard I/N; the command without it joins
     the parts.
     Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong, 130 interrupted (finished
     runs are kept).
     """
     # Missing and wrong arguments are reported before the work.
-    if parquet:
-        extra("pyarrow.parquet")
-        if out is None:
-            raise InputError("--parquet writes a file; give its folder with --out DIR")
     model = read_case(case)
     limits = _limits(limit)
     spreads = _spreads(beta, limits)
@@ -454,7 +448,7 @@ def ida(
     part = None if shard is None else _part(shard)
     store, files = None, []
     if out is not None:
-        files = claim_folder(out, [*_OF_IDA, "ida.parquet"] if parquet else _OF_IDA)
+        files = claim_folder(out, _OF_IDA)
         store = out / "store"
     watched = [name for name in limits if name in WATCHED]
     analysis = run_ida(
@@ -592,7 +586,7 @@ def _fragilities(
     return data_frame(rows), notes
 
 
-#: Files of the command; ida.parquet follows where it was asked for.
+#: Files of the command.
 _OF_IDA = ["ida.csv", "fractiles.csv", "fragility.csv", "ida.png", "fragility.png"]
 
 
@@ -606,10 +600,8 @@ def _write(
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
     save_frame(data_frame(values), shares)
     save_frame(frame, fitted)
-    for parquet in figures[2:]:
-        tables.write_parquet(analysis.runs.to_pandas(), parquet)
     drawn = ensemble_figures.ida(analysis), ensemble_figures.fragilities(dict(curves))
-    for file, ax in zip(figures, drawn, strict=False):
+    for file, ax in zip(figures, drawn, strict=True):
         write_figure(ax, file, dpi=150)
 
 

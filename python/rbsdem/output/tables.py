@@ -7,11 +7,10 @@ frame, here.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rbsdem._files import Tabular, atomic_write
+from rbsdem._files import Tabular
 from rbsdem._types import DataFrame
 from rbsdem.output.units import factor as factor_of
 from rbsdem.output.units import known, paper
@@ -26,20 +25,6 @@ if TYPE_CHECKING:
 _WIDE = 200
 #: Widest column of text; what is longer goes over several lines. Words up to the second stay whole.
 _WIDEST, _LONGEST_WORD = 60, 20
-
-
-def write_parquet(frame: DataFrame, path: str | os.PathLike[str]) -> None:
-    """Write a frame as Parquet, whole or not at all; needs pyarrow.
-
-    Parameters
-    ----------
-    frame : DataFrame
-        The table; its index is left out.
-    path : path-like
-        File to write.
-    """
-    with atomic_write(path) as file:
-        frame.to_parquet(file, index=False)
 
 
 def table(
