@@ -65,7 +65,7 @@ def arguments() -> argparse.Namespace:
 
 
 ASKED = arguments()
-os.environ["RBSDEM_SEED"] = str(ASKED.seed)
+os.environ |= {"RBSDEM_SEED": str(ASKED.seed), "RBSDEM_STOREYS": "6"}
 
 import test_invariants_frames  # noqa: E402, F401
 from relations import RELATIONS, Discard, ended, replay  # noqa: E402

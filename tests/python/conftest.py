@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from rbsdem import __main__ as command
+from rbsdem import __main__ as program
 
 TIMEOUT = 20.0  # seconds; no test asks for more than a few
 
@@ -49,7 +50,7 @@ Groups = str | Sequence[str] | None
 @pytest.fixture(scope="session")
 def executable() -> Path:
     """The Fortran executable; RBSDEM_EXECUTABLE names another one (such as the checked build)."""
-    path = Path(os.environ.get("RBSDEM_EXECUTABLE") or command.executable()).absolute()
+    path = Path(os.environ.get("RBSDEM_EXECUTABLE") or program.executable()).absolute()
     assert path.is_file(), f"{path} is not there"
     return path
 
@@ -72,6 +73,23 @@ def run_cli(executable: Path) -> Run:
             check=False,
             **options,
         )
+
+    return run
+
+
+@pytest.fixture
+def command(monkeypatch, capfd) -> Run:
+    """Run a command of the package in this process: command(*words, folder) -> CompletedProcess."""
+
+    def run(*words: str | os.PathLike[str], folder: Path | None = None):
+        capfd.readouterr()
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "argv", ["rbsdem", *map(os.fspath, words)])
+            patch.setattr(os, "execv", None)  # the executable would take the place of the tests
+            if folder is not None:
+                patch.chdir(folder)
+            code = program.main()
+        return subprocess.CompletedProcess(words, code, *capfd.readouterr())
 
     return run
 

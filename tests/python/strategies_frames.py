@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ FAMILIES: dict[str, list[str] | None] = {
     "all": [*RULES, "layered"],
 }
 MODULUS = 3e10
+#: Storeys of drawn buildings at the most; searches take taller ones.
+TALLEST = int(os.environ.get("RBSDEM_STOREYS", "2"))
 
 
 def end(rng: Rng, family: str, moment: float) -> Spring:
@@ -85,7 +88,7 @@ def frame(rng: Rng, family: str = "mixed", **fixed: Any) -> Frame:
 
 
 def building(rng: Rng) -> Frame:
-    """Return a frame of 1 to 6 storeys and 1 to 3 bays from the drawings of its members."""
+    """Return a frame of storeys up to the tallest and 1 to 3 bays from the drawings of members."""
     bars, hoops = rbsdem.Steel(between(rng, 350e6, 550e6), 600e6), rbsdem.Steel(400e6)
     more: dict[str, Any] = {"ties": rbsdem.Ties(0.008, float(rng.choice([0.1, 0.15, 0.2])), hoops)}
     more["cover"] = 0.03
@@ -96,7 +99,7 @@ def building(rng: Rng) -> Frame:
     below, above = (float(rng.choice([5e-4, 6e-4, 10e-4])), bars), (10e-4, bars)
     rows = [(0.05 - depth / 2, *below), (depth / 2 - 0.05, *above)]
     beam = rbsdem.RectangularSection(0.3, depth, concrete, bars=rows, bar_diameter=0.018, **more)
-    storeys, bays = int(rng.integers(1, 7)), int(rng.integers(1, 4))
+    storeys, bays = int(rng.integers(1, TALLEST + 1)), int(rng.integers(1, 4))
     return Frame.grid(
         [float(rng.choice([3.0, 3.2, 3.5]))] * storeys, [float(rng.choice([4.0, 5.0, 6.0]))] * bays,
         columns=column, beams=beam, beam_load=float(rng.choice([8e3, 12e3, 18e3])),

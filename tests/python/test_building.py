@@ -1,8 +1,6 @@
 """Frames from the sections of their members, held against frames that were put together by hand."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -233,13 +231,7 @@ def test_a_drawn_frame_comes_back_from_a_case_file_with_its_sections(more):
     assert case_of_text(lost.to_namelist() + LOADING).column == lost
 
 
-def command(*words, cwd=None):
-    """Return what the command of the package has done."""
-    words = [sys.executable, "-m", "rbsdem", *words]
-    return subprocess.run(words, capture_output=True, text=True, timeout=60, check=False, cwd=cwd)
-
-
-def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, run_cli):
+def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, run_cli, command):
     path = tmp_path / "house.nml"
     loading = "&loading drive = 'displacement', values = 0.03, 0.06, -0.06 /\n"
     path.write_text("&case title = 'house' /\n" + drawn.to_namelist() + loading)
@@ -276,7 +268,7 @@ def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, 
     assert sections_of(again.frame) == sections_of(drawn)
 
 
-def test_a_drawn_run_leaves_what_it_was_read_from(drawn, tmp_path):
+def test_a_drawn_run_leaves_what_it_was_read_from(drawn, tmp_path, command):
     path, history, page = (tmp_path / name for name in ("d.nml", "h.csv", "d.html"))
     loading = "&loading drive = 'displacement', file = 'h.csv' /\n"
     path.write_text(drawn.to_namelist() + loading)
@@ -290,14 +282,14 @@ def test_a_drawn_run_leaves_what_it_was_read_from(drawn, tmp_path):
         ["run", "d.nml", "-o", "rows.csv", "--report=d.nml"],
         ["report", "d.nml", "-o", "h.csv"],
     ):
-        done = command(*options, cwd=tmp_path)
+        done = command(*options, folder=tmp_path)
         assert done.returncode == 2, options
         assert "written over" in done.stderr or "is no report of rbsdem" in done.stderr
         assert {file: file.read_bytes() for file in tmp_path.iterdir()} == before
     # Options stand anywhere, and rows of an earlier run are no case.
     for _ in range(2):
         words = ["-q", "run", "--output", "rows.csv", "d.nml"]
-        assert command(*words, cwd=tmp_path).returncode == 0
+        assert command(*words, folder=tmp_path).returncode == 0
 
 
 @pytest.mark.parametrize(

@@ -114,6 +114,19 @@ def test_step_just_below_the_limit_stays_bounded_when_springs_yield(ratio):
     assert np.max(np.abs(run.rotation)) < 2 * energy / moment
 
 
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 7.3, 1e3])
+def test_no_step_given(factor):
+    """Every interval is cut into equal steps not longer than a fifth of the limit."""
+    column = linear_column(3)
+    limit = rbsdem.modes(column).stable_step
+    times = limit * factor * np.array([0.0, 1.0, 3.0, 3.5])
+    run = rbsdem.time_history(column, times, initial={"slip": [1e-3, 0, 0]}, method="rk4")
+    assert np.array_equal(run.time, times)
+    parts = np.ceil(np.diff(times) / (limit / 5) * (1 - 1e-6))
+    assert run.summary["steps"] == parts.sum()
+    assert 0 < run.summary["time_step"] <= limit / 5 * (1 + 1e-9)
+
+
 def test_a_step_that_divides_the_intervals_within_round_off():
     """Steps of 0.005 s in intervals of 0.02 s, whose ends are not exact; then one step for each."""
     column = rbsdem.Column(2.0, 1e4, Elastic(1e6), Elastic(1e6))

@@ -540,7 +540,7 @@ def test_round_off_blocks_no_spring(relation: Any, seed: int, case: int) -> None
     assert relation.outcome.judge(rng) <= relation.outcome.bar
 
 
-@relation(2, judged=0.5, bar=1e-6)
+@relation(5, judged=0.6, bar=1e-6)
 def test_buildings_go_one_way(rng: Rng) -> float:
     """Drawn buildings in cycles, in another order, in a mirror, targets larger by round-off."""
     try:

@@ -1,8 +1,5 @@
 """One case file from drawings to acceptance and a report: by the command and in Python."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from test_building import B, C
@@ -29,13 +26,6 @@ def house(tmp_path):
     return path
 
 
-def command(*words, folder=None):
-    words = [sys.executable, "-m", "rbsdem", *map(str, words)]
-    return subprocess.run(
-        words, capture_output=True, text=True, timeout=120, check=False, cwd=folder
-    )
-
-
 def test_a_case_asks_for_what_the_functions_do(house):
     case = rbsdem.read_case(house)
     found = judge(case)
@@ -56,7 +46,8 @@ def test_a_case_asks_for_what_the_functions_do(house):
     assert rbsdem.read_case(house) == case
 
 
-def test_one_command_makes_rows_target_acceptance_and_report(house):
+def test_one_command_makes_rows_target_acceptance_and_report(house, command, monkeypatch):
+    monkeypatch.setattr("rbsdem.web.sheets._image", lambda draw: "")
     assert command("check", house).stdout.startswith(f"{house}: no errors\n")
     done = command("run", "house.nml", "--report", folder=house.parent)
     assert done.returncode == 0, done.stderr
@@ -142,7 +133,7 @@ def test_the_executable_alone_says_what_to_type(house, run_cli):
         ),
     ],
 )
-def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words):
+def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words, *, command):
     assert old in HOUSE
     house.write_text(HOUSE.replace(old, new, 1))
     for name in ("check", "run"):
@@ -152,7 +143,7 @@ def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words):
     assert not (house.parent / "house.csv").exists()
 
 
-def test_a_building_is_judged_by_its_case(tmp_path, monkeypatch):
+def test_a_building_is_judged_by_its_case(tmp_path, monkeypatch, command):
     drawn = rbsdem.Building.grid(
         [3.2], [5.0], [5.0], columns=C, beams_x=B, beams_y=B, floor_load=9e3, mass="from_loads",
         eccentricity=(0.1, 0.1), kinematics="pdelta", direction=30.0, damping=0.05,
