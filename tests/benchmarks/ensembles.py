@@ -1,6 +1,6 @@
 """Times of ensembles on this machine, goal and measured side by side. Nothing is asserted.
 
-    python tests/benchmarks/ensembles.py [--quick] [--default]
+    python tests/benchmarks/ensembles.py [--quick] [--default] [--dask]
 
 Processor time of one thread where nothing else is said, so that another load of the machine
 disturbs little; what takes two threads is wall time, on a machine that does nothing else.
@@ -173,8 +173,8 @@ def rotated(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return time_, 0.4 * 9.81 * values / np.abs(values).max()
 
 
-def threads(runs: int) -> list[Row]:
-    """Time many runs by one and two threads."""
+def threads(runs: int, with_dask: bool) -> list[Row]:
+    """Time many runs by one and two threads, and by two workers of Dask."""
     motion = record_20_s()
     given = {"method": "newmark", "dt": 0.005, "collapse_drift": 0.1}
 
@@ -190,6 +190,16 @@ def threads(runs: int) -> list[Row]:
     many = Row("1e6 runs of one body, two threads", "s", 60, [seconds * MANY / runs])
     many.note = f"{runs} were run; largest memory {most:.0f} MB (goal 500)"
     rows.append(many)
+    if with_dask:
+        from distributed import Client, LocalCluster  # noqa: PLC0415
+
+        options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+        with LocalCluster(**options) as cluster, Client(cluster) as client:
+            run(640, client=client)
+            pairs = [(run(runs // 10, client=client), run(runs // 10, jobs=2)) for _ in range(3)]
+        rows.append(
+            Row("two workers of Dask over two threads", "x", 1.05, [a / b for a, b in pairs])
+        )
     return rows
 
 
@@ -198,6 +208,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer repeats, fewer runs")
     parser.add_argument("--default", action="store_true", help="runs without settings alone")
+    parser.add_argument("--dask", action="store_true", help="a Dask cluster too")
     given = parser.parse_args()
     repeats = 2 if given.quick else 5
     if given.default:
@@ -208,7 +219,7 @@ def main() -> None:
             "Lanes, one thread": lanes(repeats, 320),
             "Damped lanes, one thread": damped_lanes(repeats, 128),
             "Layered columns": [layered(repeats), twenty_by_ten(1 if given.quick else 3)],
-            "Many runs": threads(20_000 if given.quick else MANY),
+            "Many runs": threads(20_000 if given.quick else MANY, given.dask),
         }
     )
 

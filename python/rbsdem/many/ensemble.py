@@ -11,7 +11,14 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -22,7 +29,7 @@ from rbsdem import _arguments, _core
 from rbsdem._files import Tabular, data_frame
 from rbsdem._progress import Bar, progress_bar
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
-from rbsdem.errors import InputError, Interrupted
+from rbsdem.errors import InputError, Interrupted, SolveError
 from rbsdem.many import inputs
 from rbsdem.many.plan import (
     Outcome,
@@ -154,6 +161,16 @@ def available_processors() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def check_client(client: Any) -> None:
+    """Raise `InputError` for what is not a client of a cluster with workers."""
+    if not callable(getattr(client, "submit", None)) or not hasattr(client, "ncores"):
+        raise InputError(
+            f"client = {client!r:.60} must be a dask.distributed.Client (pip install distributed)"
+        )
+    if not client.ncores():
+        raise InputError("client: its cluster has no workers; start some first")
 
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
@@ -326,6 +343,7 @@ def ensemble(
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
     shard: tuple[int, int] | None = None,
+    client: Any = None,
     progress: bool = False,
     allow_partial: bool = False,
     **solver: Unpack[Solver],
@@ -372,6 +390,8 @@ def ensemble(
         (i, n): do part i of n, from 1 to n, for jobs that share the work and the store. The parts
         are expected to take as long. Runs of the other parts are in the result if the store has
         them.
+    client : dask.distributed.Client, optional
+        A cluster that does the work in place of threads.
     progress : bool, optional
         Show runs, rate and time left on stderr, if it is a terminal.
     allow_partial : bool, optional
@@ -414,6 +434,9 @@ def ensemble(
     with _arguments.collected(faults):
         if jobs is not None:
             _arguments.integer(jobs, "jobs", least=1)
+    with _arguments.collected(faults):
+        if client is not None:
+            check_client(client)
     switches = {
         "progress": isinstance(progress, Bar) or progress,
         "allow_partial": allow_partial,
@@ -441,7 +464,9 @@ def ensemble(
         own_names = column_names, [item.name for item in motion_items]
         kept = Store(_arguments.path(store), plan, own_names, part)
     runs_of_part = _of_part(each.size, part)
-    outcome, resumed, end = _carried_out(plan, runs_of_part, (each, lanes), kept, jobs, progress)
+    outcome, resumed, end = _carried_out(
+        plan, runs_of_part, (each, lanes), kept, client, jobs, progress
+    )
     states = zip(column_names, before, strict=True)
     whole = Ensemble(
         dict(zip(column_names, column_items, strict=True)),
@@ -468,6 +493,7 @@ def _carried_out(
     runs_of_part: NDArray[np.int_],
     cost: tuple[Array, NDArray[np.int32]],
     kept: Store | None,
+    client: Any,
     jobs: int | None,
     progress: bool,
 ) -> tuple[Outcome, int, EndRequest]:
@@ -489,11 +515,11 @@ def _carried_out(
         each, lanes = (values[missing] for values in cost)
         pace = _TaskSizer(each, lanes, threads)
         show = stack.enter_context(progress_bar(progress, missing.size))
-        workers = _Threads(plan.only(missing), threads)
+        workers = _Workers(plan.only(missing), client, threads)
         stack.enter_context(workers.executor)
 
         def take(piece: Piece, future: Future[Outcome]) -> None:
-            result = future.result()
+            result = workers.result(piece, future)
             pace.learn(float(each[slice(*piece)].sum()), result)
             runs = missing[slice(*piece)]
             outcome.put(runs, result)
@@ -510,26 +536,49 @@ def _carried_out(
     return outcome, resumed, end
 
 
-class _Threads:
-    """Threads, whose solver releases the interpreter's lock."""
+class _Workers:
+    """Threads, whose solver releases the interpreter's lock, or the workers of a Dask cluster."""
 
-    def __init__(self, plan: Plan, threads: int) -> None:
+    executor: Executor
+
+    def __init__(self, plan: Plan, client: Any, threads: int) -> None:
         self._plan = plan
+        self._done = 0
         # Shared with the threads: the first number ends a task, the second counts its runs.
         self._controls: list[NDArray[np.int32]] = []
-        self.executor = ThreadPoolExecutor(threads)
-        #: Tasks under way or next in line, so that no thread waits for one.
-        self.ahead = 2 * threads
+        self._remote = client is not None
+        if client is None:
+            self.executor = ThreadPoolExecutor(threads)
+            #: Tasks under way or next in line, so that no thread waits for one.
+            self.ahead = 2 * threads
+        else:
+            self.executor = client.get_executor(pure=False)
+            self.ahead = 3 * int(sum(client.ncores().values()))
 
     def submit(self, piece: Piece) -> Future[Outcome]:
         """Give a task to them."""
+        if self._remote:
+            return self.executor.submit(compute, self._plan.task(*piece))
         control = np.zeros(2, dtype=np.int32)
         self._controls.append(control)
         return self.executor.submit(lambda: compute(self._plan.task(*piece), control))
 
+    def result(self, piece: Piece, future: Future[Outcome]) -> Outcome:
+        """Return the outcome of a task."""
+        self._done += piece[1] - piece[0]
+        try:
+            return future.result()
+        except CancelledError:
+            raise SolveError("client: the cluster has lost its tasks; start it again") from None
+        except Exception as error:
+            if type(error).__name__ != "KilledWorker":
+                raise
+            text = "several worker processes died at the task of this run; run it alone to see why"
+            return Outcome.none(self._plan.task(*piece), "failed", text)
+
     def done(self) -> int:
         """Return the number of runs that are done."""
-        return sum(int(control[1]) for control in self._controls)
+        return self._done if self._remote else sum(int(control[1]) for control in self._controls)
 
     def stop(self) -> None:
         """Finish the runs under way, and start no others: every task ends with what it has."""

@@ -207,7 +207,7 @@ def _fill(work: Collector, search: CollapseSearch, low: Array, high: Array) -> b
 
 
 #: Settings that change nothing in the answer.
-_OF_THE_RUN = ("initial", "jobs", "progress", "store", "shard")
+_OF_THE_RUN = ("initial", "jobs", "progress", "store", "shard", "client")
 #: Runs that a search is expected to need for a record, as the searches of the documentation do.
 _EXPECTED = 16
 #: Percentages of the fractile curves.
@@ -378,7 +378,7 @@ def ida(
         times the time; fragilities then have the dispersion that it makes.
     **options
         See `rbsdem.many.runs.RunOptions`: intensity, period, damping, collapse_drift, measures,
-        initial, jobs, progress, store, shard; and the settings of the method, see
+        initial, jobs, progress, store, shard, client; and the settings of the method, see
         `rbsdem.Solver`. With an initial state the curves begin at what the column does in it
         without motion.
 

@@ -178,6 +178,8 @@ class RunOptions(Solver, total=False):
     shard : (int, int)
         Part i of n, as ``(3, 20)``: the i-th record and every n-th after it. Several processes with
         one store do one part each; a call without `shard` then has all.
+    client : dask.distributed.Client
+        A cluster, as for `rbsdem.ensemble`.
     """
 
     intensity: Name | OfPairs
@@ -190,6 +192,7 @@ class RunOptions(Solver, total=False):
     progress: bool
     store: str | os.PathLike[str] | None
     shard: tuple[int, int] | None
+    client: Any
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -423,7 +426,7 @@ class Collector:
 
 
 #: Settings that a second attempt by another method keeps.
-_KEPT = ("collapse_drift", "initial", "jobs", "progress", "store", "shard")
+_KEPT = ("collapse_drift", "initial", "jobs", "progress", "store", "shard", "client")
 
 
 def make_collector(
@@ -441,6 +444,7 @@ def make_collector(
     progress: bool = False,
     store: str | os.PathLike[str] | None = None,
     shard: tuple[int, int] | None = None,
+    client: Any = None,
     **solver: Unpack[Solver],
 ) -> Collector:
     """Return the collector of an analysis; the keywords are those of `RunOptions`."""
@@ -461,6 +465,7 @@ def make_collector(
         "progress": progress,
         "store": None if store is None else _arguments.path(store, "store"),
         "shard": None if shard is None else Share(shard),
+        "client": client,
     }
     if measures is None:
         frames = any(isinstance(structure, Frame) for structure in named.values())
