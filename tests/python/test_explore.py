@@ -9,7 +9,6 @@ import http.client
 import itertools
 import json
 import re
-import runpy
 import socket
 import threading
 from dataclasses import replace
@@ -243,8 +242,8 @@ def test_two_columns_and_double_curvature(post):
     two["cases"] += copy.deepcopy(two["cases"])
     group(two, "column", 1).update(top="fixed", height=3.2)
     one, other = post("loops", state=two)["columns"]
-    # Along a path half of it is the cantilever: the same force, twice the displacement.
-    assert one["force"] == other["force"]
+    # Half of it is the cantilever: the same force, twice the displacement.
+    np.testing.assert_allclose(other["force"], one["force"], rtol=1e-5)
     np.testing.assert_allclose(other["displacement"], 2 * np.array(one["displacement"]), rtol=1e-5)
     assert other["height"] == 3.2
 
@@ -345,7 +344,7 @@ def test_double_curvature_in_time_is_the_whole_column(post):
         ({"loading_amplitudes": []}, "loading.amplitudes", "must not be empty"),
         ({"loading_amplitudes": [0.01, "x"]}, "loading.amplitudes", "'x'"),
         ({"loading_cycles": [10**9]}, "loading.cycles", "too many here"),
-        ({"loading_cycles": 10**400}, "loading.cycles", "must be a whole number"),
+        ({"loading_cycles": 10**400}, "loading.cycles", "too many here"),
         ({"section_width": 10**400}, "section.width", "width"),
         ({"column_height": [1.6, 2]}, "column.height", "2 values; it takes 1"),
         ({"loading": {**QUAKE, "file": ""}}, "loading.file", "choose a file"),
@@ -696,8 +695,7 @@ WALL = [
 ]
 
 
-def test_python_gives_the_same_loop(post, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_saved_case_gives_the_same_loop(post):
     for changes in (
         {},
         {"shape": "circle", "column_top": "fixed"},
@@ -711,12 +709,8 @@ def test_python_gives_the_same_loop(post, tmp_path, monkeypatch):
         given = state(**changes)
         if groups:  # in place of the layout
             given["cases"][0][7 : 9 if groups is WALL else 8] = copy.deepcopy(groups)
-        for form, ending in (("namelist", "nml"), ("python", "py")):
-            found = post("export", state=given, form=form)
-            (tmp_path / f"{found['name']}.{ending}").write_text(found["text"])
-        names = runpy.run_path("column_a.py")
+        result = case_of_text(post("export", state=given, form="namelist")["text"]).run()
         (answer,) = post("loops", state=given)["columns"]
-        result = names["result"]
         force = result.base_shear if result.dynamic else result.force
         np.testing.assert_allclose(answer["force"], force, rtol=1e-5)
 

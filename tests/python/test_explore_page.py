@@ -269,7 +269,7 @@ def test_two_columns_and_another_loading(page):
 def test_exports(page):
     page.wait(lambda: page.all("#loopfigure .band path"))
     assert "band of 80 %" in page.text("#loopstate")
-    for form, ending in (("namelist", "nml"), ("python", "py"), ("csv", "csv")):
+    for form, ending in (("namelist", "nml"), ("csv", "csv")):
         Select(page.one("#export")).select_by_value(form)
         assert page.saved(f"column_a.{ending}")
     case = rbsdem.read_case(page.downloads / "column_a.nml")

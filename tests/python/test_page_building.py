@@ -6,6 +6,10 @@ The case file is what the page is held to: its response, acceptance and sections
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +18,7 @@ import rbsdem
 from rbsdem.codes import judge
 from rbsdem.web.answers import Answers
 from rbsdem.web.report import report_of_page
-from rbsdem.web.state import building
+from rbsdem.web.state import building, number
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
@@ -139,6 +143,41 @@ def test_a_building_is_that_of_its_case_file(text, tmp_path):
     american = report_of_page(page, asked | {"units": "in"})["text"]
     assert re.search(r"\bkip\b", american)
     assert not re.search(r"\bkip\b", report)
+
+
+def test_one_building_through_every_door(tmp_path, monkeypatch):
+    """The house of docs/frames.md, its target, acceptance and report: the same bits everywhere."""
+    monkeypatch.chdir(tmp_path)
+    text = (Path(__file__).parents[2] / "docs" / "frames.md").read_text("utf-8")
+    drawn, *_ = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (case_text,) = re.findall(r"<!-- file: house.nml -->\n```text\n(.*?)```", text, re.DOTALL)
+    assert len([line for line in drawn.splitlines() if line]) <= 22
+    assert len(case_text.splitlines()) <= 30
+    python: dict[str, Any] = {}
+    with monkeypatch.context() as patched:
+        # Its tables are compared, and figures take long.
+        patched.setattr("rbsdem.web.report.html_of", lambda sheet: sheet.heading)
+        exec(drawn, python)
+    assert Path("house.html").is_file()
+    written = Path("case")
+    written.mkdir()
+    (written / "house.nml").write_text(case_text)
+    command = [sys.executable, "-m", "rbsdem", "run", "house.nml", "--report"]
+    printed = subprocess.run(command, cwd=written, check=True, capture_output=True, text=True)
+    assert str(python["demand"]) in printed.stdout
+    assert str(python["checked"]) in printed.stdout
+    assert printed.stderr == ""
+    tables = {file.name: file.read_text() for file in Path("house_files").glob("*.csv")}
+    assert len(tables) >= 5
+    assert tables == {file.name: file.read_text() for file in written.glob("house_files/*.csv")}
+    page = Answers()
+    state = page.open({"text": case_text}, None)["state"]
+    known = page.solved(state["cases"][0])
+    assert known.case.column == python["house"]
+    np.testing.assert_array_equal(known.result.base_shear, python["push"].base_shear)
+    checked = page.checks({"state": state}, None)
+    assert checked["accepted"] == python["checked"].accepted()
+    assert checked["target"]["displacement"] == number(python["demand"].displacement)
 
 
 def test_a_building_in_plan_is_that_of_its_case_file(tmp_path):

@@ -100,7 +100,7 @@ def main(words: Sequence[str]) -> int:
     try:
         with (
             _termination_as_exception(),
-            _plain_warnings(words[0]),
+            plain_warnings(f"rbsdem: {words[0]}"),
             app.make_context("rbsdem", list(words)) as context,
         ):
             code = int(app.invoke(context))
@@ -134,13 +134,12 @@ def tell(line: str, command: str = "") -> None:
 
 
 @contextmanager
-def _plain_warnings(command: str) -> Iterator[None]:
-    """Write warnings as notes, without the line of a program that the user has not written."""
+def plain_warnings(name: str) -> Iterator[None]:
+    """Write warnings as notes of a name, without the line of a program that no user has written."""
 
     def show(message: Warning | str, *rest: Any, **more: Any) -> None:
         del rest, more
-        for line in str(message).splitlines():
-            tell(f"note: {line}", command)
+        sys.stderr.writelines(f"{name}: note: {line}\n" for line in str(message).splitlines())
 
     with warnings.catch_warnings():
         warnings.showwarning = show

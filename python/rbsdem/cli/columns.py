@@ -23,7 +23,7 @@ from rbsdem._files import claim_folder, data_frame, refuse_other_page, save_fram
 from rbsdem._package import recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
-from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
+from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, plain_warnings, quiet, tell
 from rbsdem.errors import InputError, RbsdemError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble
 from rbsdem.many.fragility import Fragility, Hazard
@@ -44,10 +44,9 @@ from rbsdem.run.solver import COLLAPSE_DRIFT, Solver
 from rbsdem.section.criteria import WATCHED
 from rbsdem.section.frame import Frame
 from rbsdem.web.answers import Answers, tests_of
-from rbsdem.web.exports import opened
 from rbsdem.web.report import write_record, write_report
 from rbsdem.web.server import ExploreServer
-from rbsdem.web.state import DEFAULT
+from rbsdem.web.state import DEFAULT, opened
 
 _units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
 _pairs = click.option(
@@ -78,6 +77,7 @@ def draw(case: Path) -> int:
     return 0
 
 
+@plain_warnings("rbsdem")
 def on_springs(program: str, command: str, path: str, *options: str) -> int:
     """Run the executable on a case whose springs, or whose loads, Python makes.
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+import tempfile
 import time
 import traceback
 from collections import OrderedDict
@@ -34,23 +35,23 @@ from rbsdem.output.section import hoop_lines
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.case import Case
 from rbsdem.run.column_result import ColumnResult
+from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram as diagram_of
-from rbsdem.section.frame import Frame
-from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.strength import InteractionDiagram, interaction
-from rbsdem.web import exports, frames
+from rbsdem.web import frames
 from rbsdem.web.state import (
     MOST_VALUES,
-    Drawn,
     Faults,
     RefusedError,
     case_of,
-    drawn_of,
     first,
     is_frame,
     key_of,
+    namelist,
     number,
     numbers,
+    opened,
     sections_of,
     shown_rows,
     state_of,
@@ -60,18 +61,11 @@ from rbsdem.web.state import (
 _KEPT, _RECORDS = 12, 16
 #: Points of an interaction diagram that takes long.
 _POINTS = 24
+#: Figures of which a band has an interval.
+_INTERVALS = ("peak_force", "drift_at_loss", "energy")
 #: Factors of a motion for which the peak drift is shown.
 _SCALES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 
-#: A program that runs a case file of the page.
-_PROGRAM = """\
-# Beside it stands {0}.nml, the case file of the page.
-import rbsdem
-
-case = rbsdem.read_case("{0}.nml")
-result = case.run()
-print(result)
-"""
 Asked = Mapping[str, Any]
 Pause = Callable[[], None]
 
@@ -84,8 +78,6 @@ class Answered:
     ----------
     result : Result or FrameResult, or None
         The response; None if the input is wrong.
-    drawn : Drawn or None
-        The drawn column; None for a case that has no drawing.
     case : Case or None
         The case as it is read from its groups.
     faults : list
@@ -101,13 +93,17 @@ class Answered:
     """
 
     result: Any = None
-    drawn: Drawn | None = None
     case: Case | None = None
     faults: list[dict[str, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     stopped: str = ""
     seconds: float = 0.0
     sections: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def drawing(self) -> LayeredModel | None:
+        """The drawing of the column that was computed; None of what has none."""
+        return getattr(getattr(self.result, "column", None), "drawing", None)
 
 
 class Answers:
@@ -161,22 +157,21 @@ class Answers:
         if case is None:
             return Answered(notes=notes, **about)
         result: Any = None
-        stopped, drawn = "", None
+        stopped = ""
         with recorded() as told, faults.kept():
-            if isinstance(case.column, Frame) and not isinstance(given, str):
-                result, stopped = frames.solved(case, faults)
-            else:
-                computed, drawn = drawn_of(case, not isinstance(given, str))
-                try:
+            try:
+                if is_frame(given):
+                    result, stopped = frames.solved(case)
+                else:
                     # The strains of a layered hinge follow from its openings.
-                    result = computed.run(computed.plain_column("the page"), openings=True)
-                except SolveError as error:
-                    result, stopped = error.result, str(error)
-                    if result is None:
-                        faults.add("", str(error))
+                    result = case.run(case.plain_column("the page"), openings=True)
+            except SolveError as error:
+                result, stopped = error.result, str(error)
+                if result is None or not result.time.size:
+                    result = None
+                    faults.add("", stopped)
         notes = [*notes, *(str(one.message) for one in told)]
-        about |= {"notes": list(dict.fromkeys(notes)), "stopped": stopped}
-        return Answered(result, drawn if result is not None else None, case, **about)
+        return Answered(result, case, notes=list(dict.fromkeys(notes)), stopped=stopped, **about)
 
     def _columns(
         self, asked: Asked, pause: Pause, answer: Callable[[Any, Answered], dict[str, Any]]
@@ -201,21 +196,19 @@ class Answers:
     def _loop(self, case: Any) -> dict[str, Any]:
         begun = time.perf_counter()
         found = self.solved(case)
-        drawn = found.drawn
+        drawing, result = found.drawing, found.result
         answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
         figures = {n: None if one is None else _figure(one) for n, one in found.sections.items()}
         if is_frame(case):
             answer |= {"stopped": found.stopped, "sections": figures}
-            if found.result is not None:
-                answer |= frames.to_json(found.result)
+            answer |= {} if result is None else frames.to_json(result)
         else:
             answer["figure"] = next(iter(figures.values()), None)
-            if drawn is not None:
-                answer |= {"figure": _figure(drawn.section), "model": drawn.column.model}
-            if found.result is not None:
-                answer |= to_json(found.result, 1.0 if drawn is None else drawn.factor)
-                answer |= {"stopped": found.stopped}
-                answer["title"] = found.case.title if found.case else ""
+            if drawing is not None:
+                answer |= {"figure": _figure(drawing.section), "model": result.column.model}
+            if result is not None:
+                title = found.case.title if found.case else ""
+                answer |= to_json(result) | {"stopped": found.stopped, "title": title}
         return answer | {"seconds": round(max(found.seconds, time.perf_counter() - begun), 4)}
 
     def checks(self, asked: Asked, pause: Pause) -> dict[str, Any]:
@@ -235,13 +228,14 @@ class Answers:
             raise RefusedError(400, "code must be aci318 or ec2")
 
         def answer(_: Any, found: Answered) -> dict[str, Any]:
-            if found.drawn is None:
+            drawing = found.drawing
+            if drawing is None:
                 return {}
-            section, load = found.drawn.section, found.drawn.column.axial_load
+            section, load = drawing.section, drawing.axial_load
             return {
                 "curvature": [_tried(_curvature, section, load, c) for c in (False, True)],
                 "code": _tried(_interaction, section, code),
-                "codes": _tried(_codes, section, found.drawn.span, load),
+                "codes": _tried(_codes, section, drawing.height, load),
                 "axial_load": number(load),
             }
 
@@ -251,11 +245,12 @@ class Answers:
         """Return interaction diagrams by material laws, of section and joint; they take long."""
 
         def answer(_: Any, found: Answered) -> dict[str, Any]:
-            if found.drawn is None:
+            if found.drawing is None:
                 return {}
-            column, section = found.drawn.column, _tried(_interaction, found.drawn.section, None)
-            layered = isinstance(column, LayeredColumn)
-            return {"section": section} | ({"joint": _tried(_joint, column)} if layered else {})
+            return {
+                "section": _tried(_interaction, found.drawing.section, None),
+                "joint": _tried(_joint, found.result.column),
+            }
 
         return self._columns(asked, pause, answer)
 
@@ -269,7 +264,7 @@ class Answers:
         """Return the peak drift under a motion by its scale, times that of the state."""
 
         def answer(case: Any, found: Answered) -> dict[str, Any]:
-            drawn = found.drawn is not None and not isinstance(case, str)
+            drawn = found.drawing is not None and not isinstance(case, str)
             if not drawn or not found.result.dynamic:
                 return {"none": "scales are for a motion of the ground"}
             now = _arguments.number(first(case, "loading").get("scale", 1.0), "scale")
@@ -297,11 +292,11 @@ class Answers:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
 
         def answer(case: Any, found: Answered) -> dict[str, Any]:
-            drawn = None if isinstance(case, str) else found.drawn
-            if drawn is None or drawn.section.hollow:
+            drawing = None if isinstance(case, str) else found.drawing
+            if drawing is None or drawing.section.hollow:
                 return {"none": "the folder has no tests of such columns"}
             try:
-                near = nearest(drawn.section, drawn.span, drawn.column.axial_load, tests, _TESTS)
+                near = nearest(drawing.section, drawing.height, drawing.axial_load, tests, _TESTS)
             except (RbsdemError, ValueError) as error:
                 return {"none": str(error)}
             rows = []
@@ -315,28 +310,25 @@ class Answers:
     # ---- texts ----------------------------------------------------------------------------------
 
     def export(self, asked: Asked, pause: Pause) -> dict[str, Any]:
-        """Return a column or a frame as a case file, Python or csv."""
+        """Return a column or a frame as a case file, or its rows as csv."""
         cases, form, which = state_of(asked), asked.get("form"), asked.get("column", 0)
-        if form not in ("namelist", "python", "csv"):
-            raise RefusedError(400, "form must be namelist, python or csv")
+        if form not in ("namelist", "csv"):
+            raise RefusedError(400, "form must be namelist or csv")
         if type(which) is not int or not 0 <= which < len(cases):
             raise RefusedError(400, "column must be the number of a column")
         case = cases[which]
         found = self.solved(case)
         if found.result is None:
             return {"faults": found.faults}
-        name = "frame" if is_frame(case) else f"column_{'ab'[which]}"
-        if form == "csv":
-            text = exports.csv_of(found.result)
-        elif form == "namelist":
-            text = exports.namelist(case, self.records)
-        else:
-            text = _PROGRAM.format(name)
-        return {"text": text, "name": name}
+        csv = form == "csv"
+        return {
+            "text": _csv_of(found.result) if csv else namelist(case, self.records),
+            "name": "frame" if is_frame(case) else f"column_{'ab'[which]}",
+        }
 
     def open(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the state of the text of a case file."""
-        return exports.opened(asked.get("text"), self.keep_record)
+        return opened(asked.get("text"), self.keep_record)
 
     def keep_record(self, motion: GroundMotion, name: str) -> str:
         """Keep a record; return the name by which a loading asks for it."""
@@ -373,36 +365,36 @@ ONCE = ("export", "open", "record", "report")
 LANES = ("loops", "checks", "sections", "own", "bands", "scales", "nearest", *ONCE)
 
 
+def _csv_of(result: ColumnResult | FrameResult) -> str:
+    """Return the rows of a result as the executable writes them."""
+    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
+        rows = Path(folder) / "rows.csv"
+        result.to_csv(rows)
+        return rows.read_text(encoding="utf-8")
+
+
 # ---- a response as JSON -------------------------------------------------------------------------
 
 
-def to_json(result: ColumnResult, factor: float = 1.0) -> dict[str, Any]:
-    """Return a response as the page draws it.
-
-    Parameters
-    ----------
-    result : Result
-        The response.
-    factor : float, optional
-        Displacement between the ends of the column over that of the column that was computed.
-    """
+def to_json(result: ColumnResult) -> dict[str, Any]:
+    """Return the response of a column as the page draws it."""
     force = result.base_shear if result.dynamic else result.force
     rows = shown_rows(result.displacement, force)
     height, spring = result.column.height, result.energy["spring"]
     footing, loss = result.column.footing is not None, None
     if not result.dynamic:
         loss = number(abs(result.strength_loss()) / height)
+    numbered = ("displacement", "force", "drift", "threshold")
     answer: dict[str, Any] = {
-        "displacement": numbers(factor * result.displacement[rows]),
+        "displacement": numbers(result.displacement[rows]),
         "force": numbers(force[rows]),
-        "height": factor * height,
+        "height": height,
         "status": result.summary["status"],
         "method": result.summary["method"],
         "dynamic": result.dynamic,
         "states": [
-            {"name": state.name, "displacement": number(factor * state.displacement)}
-            | {name: number(getattr(state, name)) for name in ("force", "drift", "threshold")}
-            | {"source": state.source}
+            {"name": state.name, "source": state.source}
+            | {name: number(getattr(state, name)) for name in numbered}
             for state in result.limit_states()
         ],
         "figures": {
@@ -412,12 +404,10 @@ def to_json(result: ColumnResult, factor: float = 1.0) -> dict[str, Any]:
             "peak_drift": _peak(result.drift),
             "drift_at_loss": loss,
             "residual_drift": number(result.residual_drift),
-            "energy": number(factor * float(spring[-1])) if spring.size else None,
+            "energy": number(spring[-1]) if spring.size else None,
         },
     }
-    if result.dynamic:
-        answer["time"] = numbers(result.time[rows])
-    return answer
+    return answer | ({"time": numbers(result.time[rows])} if result.dynamic else {})
 
 
 def _peak(values: Array) -> float | None:
@@ -425,31 +415,24 @@ def _peak(values: Array) -> float | None:
 
 
 def _band(found: Answered) -> dict[str, Any]:
-    drawn, result = found.drawn, found.result
-    if drawn is None or result is None or result.dynamic:
+    result = found.result
+    if found.drawing is None or result.dynamic:
         return {"none": "a band is for a drawn column on a path"}
-    column = drawn.column
-    if not isinstance(column, LayeredColumn):
-        return {"none": "a band is for the layered model"}
-    if column.top == "fixed":
-        return {"none": "no band: its scatter is that of columns with one hinge"}
     with unwarned(Warning):
         try:
-            band = band_of(column, result.displacement)
+            band = band_of(result.column, result.displacement)
         except InputError as error:
             return {"none": str(error)}
     return {
         "lower": numbers(band.lower),
         "upper": numbers(band.upper),
         "samples": len(band.samples),
-        "peak_force": _interval(band.peak_force),
-        "drift_at_loss": _interval(band.drift_at_loss),
-        "energy": _interval(band.energy, drawn.factor),
+        **{name: _interval(getattr(band, name)) for name in _INTERVALS},
     }
 
 
-def _interval(interval: Any, factor: float = 1.0) -> list[float | None]:
-    return [number(factor * getattr(interval, end)) for end in ("lower", "value", "upper")]
+def _interval(interval: Any) -> list[float | None]:
+    return [number(getattr(interval, end)) for end in ("lower", "value", "upper")]
 
 
 # ---- a section as JSON --------------------------------------------------------------------------

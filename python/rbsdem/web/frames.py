@@ -11,7 +11,7 @@ from rbsdem._package import unwarned
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array
 from rbsdem.checks.acceptance import Assessment
-from rbsdem.errors import RbsdemError, SolveError
+from rbsdem.errors import RbsdemError
 from rbsdem.many.judgement import Judgement, judge, response
 from rbsdem.output.frames import deformed, spring_rotations
 from rbsdem.run.analysis import modes
@@ -31,27 +31,15 @@ def is_push(case: Case) -> bool:
     return case.displacement is not None and len(np.unique(case.displacement[1:])) <= 1
 
 
-def solved(case: Case, faults: Faults) -> tuple[FrameResult | BuildingResult | None, str]:
-    """Return the response of a frame and why it ended early; what is wrong is added to the faults.
+def solved(case: Case) -> tuple[FrameResult | BuildingResult, str]:
+    """Return the response of a frame and why it ended early.
 
     One displacement is a push-over to there; several are a path.
     """
-    result: Any
-    try:
-        with faults.kept():
-            if case.displacement is not None and not is_push(case):
-                result = case.run()
-            else:
-                result = response(case, max_seconds=_SECONDS)
-            about = result.summary
-            early = about["status"] not in ("completed", "collapsed")
-            return result, about["reason"] if early else ""
-    except SolveError as error:
-        found: Any = error.result
-        if found is not None and len(found.time):
-            return found, str(error)
-        faults.add("", str(error))
-    return None, ""
+    path = case.displacement is not None and not is_push(case)
+    result: Any = case.run() if path else response(case, max_seconds=_SECONDS)
+    early = result.summary["status"] not in ("completed", "collapsed")
+    return result, result.summary["reason"] if early else ""
 
 
 #: What the page is told of each frame of a building.
@@ -162,16 +150,13 @@ def judged(case: Case, result: FrameResult | BuildingResult) -> Judgement:
 def checked(case: Case, result: FrameResult | BuildingResult, faults: Faults) -> dict[str, Any]:
     """Return the outcome of `judged` as the page draws it."""
     made = None
-    try:
-        with unwarned(Warning):
-            with faults.kept():
-                made = judged(case, result)
-            if made is None and case.assess:
-                # The target stands without limits, as those of walls, which no code has.
-                with faults.kept():
-                    made = judged(replace(case, assess=[]), result)
-    except RbsdemError as error:
-        faults.add("", str(error))
+    # The target stands without limits, as those of walls, which no code has.
+    for asked in (case, replace(case, assess=[])):
+        try:
+            with unwarned(Warning), faults.kept():
+                made = made or judged(asked, result)
+        except RbsdemError as error:
+            faults.add("", str(error))
     found: dict[str, Any] = {"faults": faults.listed}
     if made is None:
         return found
@@ -208,14 +193,8 @@ def _ends(made: Assessment) -> list[dict[str, Any]]:
         at = row["member"], row["end"]
         ratio = float(np.nan_to_num(max(row[last], row["ratio_shear"])))
         if at not in found or ratio > found[at]["ratio"]:
-            about = {name: row[name] for name in ("governed_by", "status")}
-            found[at] = {
-                "member": at[0],
-                "end": at[1],
-                "ratio": ratio,
-                "exceeded": states[at],
-                **about,
-            }
+            about = {name: row[name] for name in ("member", "end", "governed_by", "status")}
+            found[at] = {**about, "ratio": ratio, "exceeded": states[at]}
     return [one | {"ratio": number(one["ratio"])} for one in found.values()]
 
 

@@ -19,7 +19,6 @@ from rbsdem.output.units import units as paper_units
 from rbsdem.run.case import Case, case_of
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
-from rbsdem.section.layered import LayeredColumn
 from rbsdem.web.pages import REPORT, one_file
 from rbsdem.web.sheets import Sheet, head, html_of, of_assessment, sheets_of, write
 
@@ -85,11 +84,10 @@ def report_data(
         "near": None if answers.near is None else answers.nearest(asked, lambda: None),
         "exports": {},
     }
-    for form in ("namelist", "python"):
-        export = answers.export(asked | {"form": form}, lambda: None)
-        # A long history would be most of the report; the case that it is made from has it.
-        if len(export["text"]) < _MOST_TEXT:
-            data["exports"][form] = export
+    export = answers.export(asked | {"form": "namelist"}, lambda: None)
+    # A long history would be most of the report; the case that it is made from has it.
+    if len(export["text"]) < _MOST_TEXT:
+        data["exports"]["namelist"] = export
     return data
 
 
@@ -157,18 +155,13 @@ def _column_data(result: ColumnResult, case: Case, title: str) -> dict[str, Any]
     Strains of layers, from which most limit states follow, need them.
     """
     from rbsdem.web.answers import Answered  # noqa: PLC0415
-    from rbsdem.web.state import Drawn  # noqa: PLC0415
 
     text = case.to_namelist()
-    state = {"cases": [text]}
-    column, drawn = result.column, None
-    if isinstance(column, LayeredColumn) and column.drawing is not None:
-        drawn = Drawn(column, column.drawing.section, column.drawing.height, 1.0)
     try:
         result.limit_states()
     except InputError:
-        return report_data(state, title)
-    return report_data(state, title, known=Answered(result, drawn, case))
+        return report_data({"cases": [text]}, title)
+    return report_data({"cases": [text]}, title, known=Answered(result, case))
 
 
 # ---- reports of records --------------------------------------------------------------------------

@@ -2,17 +2,17 @@
 
 A case is the list of the groups of a case file, each a name and its values by their keys in SI, or
 the text of a file that the page does not draw. It is written as such a file and read by the reader
-of all cases, so that keys, bounds and messages are those of files.
+of all cases, so that keys, bounds and messages are those of files. A file that comes back is drawn
+again; a column whose springs are none that are drawn stays a text.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from itertools import pairwise
@@ -21,7 +21,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._package import recorded
+from rbsdem._package import recorded, unwarned
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
@@ -32,8 +32,7 @@ from rbsdem.motions.motion import GroundMotion, synthetic
 from rbsdem.run.case import Case, case_of_text, groups_of_text
 from rbsdem.run.groups import section_of
 from rbsdem.run.solver import COLLAPSE_DRIFT
-from rbsdem.section import columns
-from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.frame import Frame
 from rbsdem.section.parameters import VERSION
 
 Group: TypeAlias = tuple[str, dict[str, Any]]
@@ -41,6 +40,7 @@ Groups: TypeAlias = Sequence[Group]
 
 _DRIFTS = [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06]
 _DRAWN = {"version": VERSION}
+_STATIC = ("analysis", {"method": "static"})
 
 # fmt: off
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
@@ -62,8 +62,9 @@ DEFAULT: dict[str, Any] = {"cases": [[
 _MOST_CASES, _MOST_CYCLES, MOST_VALUES, _MOST_CELLS = 2, 200, 60_000, 12
 #: Rows of a response in an answer; a figure shows no more.
 _ROWS = 8000
-#: Keys that name files, which a page must not reach.
+#: Keys that name files, which a page must not reach; texts and comments of a line.
 _FILES = ("file", "initial", "state", "path")
+_TEXTS = re.compile(r"'[^']*'|\"[^\"]*\"|!.*")
 _WORD = re.compile(r"[a-z]\w{0,31}", re.ASCII)
 _SYNTHETIC = re.compile(r"synthetic ([0-9]{1,9})")
 #: Where a message is from, and the drawing that it is about; the group that it begins with.
@@ -77,6 +78,13 @@ _OF_DRAWING = (
     *("section", "concrete", "steel", "bars", "row", "layout", "inner_layout", "ties", "spiral"),
     *("boundary", "curtain", "lap", "parameter"),
 )
+#: Groups of springs, which are made again where they are those of the drawing.
+_SPRINGS = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
+#: Keys of a column and of its drawing that are made with its springs.
+_MADE = {
+    "column": ("n", "mass", "lengths", "depth", "rotary_inertia", "kinematics", "model"),
+    "drawing": ("height", "axial_load", "n"),
+}
 #: Keys of the page that objects of the program call otherwise.
 _OWNERS = {"bars": "row", "footing": "column"}
 
@@ -85,17 +93,20 @@ _OWNERS = {"bars": "row", "footing": "column"}
 def building() -> dict[str, Any]:
     """Return the state that a building begins with: the ready house, pushed, beside a code."""
     text = house(3).to_namelist().replace("section-1", "C1").replace("section-2", "B1")
-    drawn = [
-        [name, {**values, "steel": 1} if name == "row" else values]
-        for name, values in groups_of_text(text)
-        if name != "analysis"
-    ]
-    asked = [
-        ["loading", {"drive": "displacement", "values": [0.288]}],
-        ["target", {"method": "en_1998", "spectrum": "en_1998", "ag": 0.25, "soil": "C"}],
-        ["assess", {"code": "en_1998_3"}],
-    ]
-    return {"cases": [[*drawn, *asked]]}
+    text = text.replace("0.016 /", "0.016, steel = 1 /") + (
+        "&loading drive = 'displacement', values = 0.288 /\n"
+        "&target method = 'en_1998', spectrum = 'en_1998', ag = 0.25, soil = 'C' /\n"
+        "&assess code = 'en_1998_3' /"
+    )
+    return {"cases": [groups_drawn(text)]}
+
+
+def groups_drawn(text: str) -> list[Any]:
+    """Return the groups of a text as the page has them, without what it has no need to say."""
+    read = [one for one in groups_of_text(text) if one != _STATIC and one[0] != "units"]
+    for _, values in read:
+        values.pop("source", None)
+    return [[*one] for one in read]
 
 
 class RefusedError(Exception):
@@ -151,18 +162,16 @@ class Faults:
         owner, _, key = name.rpartition(".")
         if not owner and (begins := _OWNER.match(text)):
             owner = begins[1]
+        # Of "flexure spring of joint 0" the group
+        owner = _OWNERS.get(owner, owner.partition(" ")[0])
+        block = _block(self.groups, drawing)
         if line is not None and self.lines:
             found = [max(bisect_right(self.lines, int(line)) - 1, 0)]
+        elif row := re.match(r"section: (top|bottom|side): ", text):
+            found, key = [i for i in block if self.groups[i][1].get("face") == row[1]], "number"
         else:
-            block = _block(self.groups, drawing)
-            # Of "flexure spring of joint 0" the group
-            owner = _OWNERS.get(owner, owner.partition(" ")[0])
             found = [i for i in block if self.groups[i][0] == owner]
             found = found or [i for i in block if key and key in self.groups[i][1]]
-        if row := re.match(r"section: (top|bottom|side): ", text):
-            block = _block(self.groups, drawing)
-            found = [i for i in block if self.groups[i][1].get("face") == row[1]]
-            key = "number"
         stated = _STATED.search(text)
         for i in found:
             value = self.groups[i][1].get(key)
@@ -201,29 +210,6 @@ def drawings(groups: Groups) -> Iterator[tuple[str, list[int]]]:
     for begin, end in pairwise([*starts, len(groups)]):
         own = [i for i in range(begin + 1, end) if groups[i][0] in _OF_DRAWING]
         yield str(groups[begin][1].get("name", "")), [begin, *own]
-
-
-@dataclasses.dataclass(frozen=True)
-class Drawn:
-    """A column of the page that was made.
-
-    Attributes
-    ----------
-    column : Column
-        The column that is computed: along a path the lower half of one in double curvature, unless
-        a footing makes its ends unlike.
-    section : Section
-        Its section.
-    span : float
-        From an end to where the moment is zero [m].
-    factor : float
-        Displacement between the ends over that of the column that is computed.
-    """
-
-    column: Column
-    section: Section
-    span: float
-    factor: float
 
 
 def key_of(value: object) -> str:
@@ -409,71 +395,90 @@ def case_of(
 
 def _check_sizes(groups: Groups, faults: Faults) -> None:
     """Refuse what a page is too small for."""
-    for i, (name, values) in enumerate(groups):
-        for key in ("storeys", "bays", "bays_x", "bays_y") if name == "frame" else ():
-            several = values.get(key)
-            if isinstance(several, list) and len(several) > _MOST_CELLS:
+    for i, (_, values) in enumerate(groups):
+        several = {key: value for key, value in values.items() if isinstance(value, list)}
+        for key in ("storeys", "bays", "bays_x", "bays_y"):
+            if len(several.get(key, ())) > _MOST_CELLS:
                 faults.add(f"{i}.{key}", f"give at most {_MOST_CELLS} of them")
-        steps = values.get("amplitudes") if name == "loading" else None
-        if isinstance(steps, list):
-            counts = values.get("cycles")
-            counts = counts if isinstance(counts, list) and counts else [counts or 1]
-            with faults.kept():
-                whole = [_arguments.integer(one, "loading: cycles") for one in counts]
-                many = sum(whole) if len(whole) > 1 else whole[0] * len(steps)
-                if many > _MOST_CYCLES:
-                    text = f"{many} cycles are too many here; at most {_MOST_CYCLES}"
-                    faults.add(f"{i}.cycles", f"cycles = {counts[0]}: {text}")
+        counts = several.get("cycles") or [values.get("cycles", 1)]
+        each = len(several.get("amplitudes", ())) if len(counts) == 1 else 1
+        many = each * sum(one for one in counts if isinstance(one, int | float))
+        if many > _MOST_CYCLES:
+            text = f"{many} cycles are too many here; at most {_MOST_CYCLES}"
+            faults.add(f"{i}.cycles", f"cycles = {counts[0]}: {text}")
 
 
 def refuse_files(text: str) -> None:
     """Refuse keys that name files, outside of texts and comments, which end with their line."""
     for number, line in enumerate(text.splitlines(), 1):
-        bare, quote = [], ""
-        for letter in line:
-            if not quote and letter == "!":
-                break
-            if not quote and letter in "'\"":
-                quote = letter
-            elif letter == quote:
-                quote = ""
-            elif not quote:
-                bare.append(letter)
-        if quote:
-            raise InputError(f"line {number}: a text is not closed; put {quote} at its end")
-        key = re.search(rf"\b({'|'.join(_FILES)})\b", "".join(bare), re.IGNORECASE)
-        if key:
+        bare = _TEXTS.sub("", line)
+        if quote := re.search("['\"]", bare):
+            raise InputError(f"line {number}: a text is not closed; put {quote[0]} at its end")
+        if key := re.search(rf"\b({'|'.join(_FILES)})\b", bare, re.IGNORECASE):
             raise InputError(
                 f"line {number}: {key[0].lower()} = names a file, which a page does not read; "
                 "start rbsdem explore CASE.nml, which puts histories into the case"
             )
 
 
-def drawn_of(case: Case, drawn_here: bool) -> tuple[Case, Drawn | None]:
-    """Return the case that is computed, and its column as it was drawn; None without a drawing.
+def namelist(case: Any, records: Mapping[str, GroundMotion]) -> str:
+    """Return a case of the page as the text of a case file."""
+    return case if isinstance(case, str) else text_of(completed(case), records, Faults(case))
+
+
+def opened(text: object, keep: Callable[[GroundMotion, str], str]) -> dict[str, Any]:
+    """Return the state of the text of a case file.
 
     Parameters
     ----------
-    case : Case
-        A case of a column.
-    drawn_here : bool
-        Whether the page draws it: then half of a column in double curvature is computed along a
-        path, which moves by half of what its ends do.
+    text : str
+        The text.
+    keep : callable
+        Keeps a record that is in it, and returns its name.
     """
-    column = case.column
-    if not isinstance(column, LayeredColumn) or column.drawing is None:
-        return case, None
-    model = column.drawing
-    whole = case.displacement is None or column.footing is not None or column.top != "fixed"
-    if whole or not drawn_here or case.displacement is None:
-        return case, Drawn(column, model.section, model.height, 1.0)
-    half = columns.column(
-        model.section, model.height, axial_load=column.axial_load,
-        model_parameters=model.parameters, restrained=model.restrained,
-        round_core=model.round_core,
-    )  # fmt: skip
-    moved = dataclasses.replace(case, column=half, displacement=0.5 * case.displacement)
-    return moved, Drawn(half, model.section, model.height, 2.0)
+    try:
+        if not isinstance(text, str):
+            raise InputError("case: give the text of a case file")
+        refuse_files(text)
+        with unwarned(Warning):
+            # Notes on it stand beside its loop.
+            groups = _drawn_again(groups_drawn(text), case_of_text(text).column)
+    except InputError as error:
+        return {"faults": [{"field": "", "text": str(error)}]}
+    # A loading that the page has no fields for leaves the case a text.
+    fields = all(_keep_record(values, keep) for name, values in groups if name == "loading")
+    return {"state": {"cases": [groups if groups and fields else text]}}
+
+
+def _keep_record(values: dict[str, Any], keep: Callable[[GroundMotion, str], str]) -> bool:
+    """Put the name of a record in place of its values; return whether the page can show it."""
+    if values["drive"] != "ground_acceleration":
+        return bool(values["drive"] == "displacement")
+    steps = np.diff(values.pop("time", [0.0, values.pop("interval", 0.0)]))
+    if "values" not in values or values.get("unit", "m/s2") != "m/s2":
+        return False
+    if not steps[0] > 0.0 or not np.allclose(steps, steps[0], rtol=1e-6, atol=0.0):
+        return False
+    motion = GroundMotion(np.array(values.pop("values")), float(steps[0]))
+    values["file"] = keep(motion, "record of the file")
+    return True
+
+
+def _drawn_again(groups: list[Any], column: Column | Frame) -> list[Any]:
+    """Return the groups that the page draws; none of a column that is not as it would be drawn."""
+    if isinstance(column, Frame):
+        return groups if first(groups, "frame").get("storeys") else []
+    if not first(groups, "drawing") or sum(name == "loading" for name, _ in groups) != 1:
+        return []
+    made: list[Any] = []
+    for name, values in groups:
+        if name not in _SPRINGS or values.get("joint") in (0, [0]):
+            own = {key: one for key, one in values.items() if key not in _MADE.get(name, ())}
+            made.append([name, {"top": "free"} | own if name == "column" else own])
+    try:
+        return made if case_of_text(text_of(made, {}, Faults(made))).column == column else []
+    except InputError:
+        return []
 
 
 def sections_of(case: Any) -> dict[str, Section | None]:

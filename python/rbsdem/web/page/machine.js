@@ -191,7 +191,7 @@ function refuseToSave() {
 async function save(form) {
   const answer = fixed ? report.exports[form] : await ask(form === "report" ? "report" : "export", { ...sent(), form, units: page.system, ...page.view.exported?.() });
   if (!answer?.text) { refuseToSave(); return; }
-  const ending = { namelist: "nml", python: "py", csv: "csv", report: "html" }[form];
+  const ending = { namelist: "nml", csv: "csv", report: "html" }[form];
   download(`${answer.name}.${ending}`, answer.text, "text/plain");
   say(`Saved ${answer.name}.${ending}`);
 }
