@@ -129,8 +129,8 @@ class Frame:
 
     storeys: ArrayLike | None = None
     bays: ArrayLike | None = None
-    columns: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None
-    beams: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None
+    columns: FrameMember | Mapping[Any, FrameMember | None] | None = None
+    beams: FrameMember | Mapping[Any, FrameMember | None] | None = None
     floor_mass: ArrayLike = 0.0
     beam_load: ArrayLike = 0.0
     kinematics: Literal["small", "pdelta"] = "small"
@@ -539,10 +539,10 @@ class Frame:
         dead_load: ArrayLike = 0.0,
         live_load: ArrayLike = 0.0,
         live_share: float = 0.3,
-        node_load: float | Mapping[tuple[int, int], float] = 0.0,
+        node_load: float | Mapping[Any, float] = 0.0,
         self_weight: bool = False,
         mass: Literal["from_loads"] | None = None,
-        infills: Infill | Mapping[tuple[int, int], Infill | None] | None = None,
+        infills: Infill | Mapping[Any, Infill | None] | None = None,
         walls: Mapping[int, WallSection | Sequence[WallSection]] | None = None,
         wall_spans: ArrayLike | Mapping[int, float] | None = None,
         axial_loads: Mapping[str, float] | None = None,

@@ -38,7 +38,8 @@ from rbsdem.section.walls import wall_members
 
 Halves = tuple[Section, Section]
 Drawn = Section | Halves | FrameMember
-Cells = Drawn | Mapping[tuple[int, int], Drawn | None]
+# Places are pairs of numbers, tuples of them and words; a variable keeps the type of its keys.
+Cells = Drawn | Mapping[Any, Drawn | None]
 
 #: Weight of reinforced concrete [N/m3].
 CONCRETE_WEIGHT = 25e3
