@@ -151,9 +151,11 @@ contains
       end select
    end subroutine visit_open
 
-   !> Index of a key of the open group; 0 with a message if the group does not have it, `ignored` without one
-   !> if only the rule of its spring, which is refused elsewhere, is unknown. The rule of a spring and the
-   !> shape of a section must be set before the keys that they bring.
+   !> Find the index of a key of the open group.
+   !>
+   !> It is 0, with a message, if the group does not have the key, and `ignored`, without one, if the key is a
+   !> parameter of some rule and the rule of the spring is unknown, which is told elsewhere. The rule of a
+   !> spring and the shape of a section must be set before the keys that they bring.
    subroutine find(self, name, where, key_index, messages)
       class(group_reader), intent(in) :: self
       character(len=*), intent(in) :: name

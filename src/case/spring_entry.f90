@@ -27,6 +27,9 @@ module rbs_case_spring_entry
    character(len=16), parameter, public :: spring_groups(5) = [character(len=16) :: &
       'shear', 'flexure', 'axial_spring', 'layer_spring', 'layers']
 
+   !> The groups that describe layers of joints, and are no springs of joints themselves.
+   character(len=16), parameter :: layer_groups(2) = spring_groups(4:)
+
    !> One of these groups: a spring of a joint, a spring of layers, or the layers of joints.
    type, extends(frame_spring) :: spring_entry
       !> For messages: 'case.nml line 4: ' or blank
@@ -115,7 +118,8 @@ contains
       if (len_trim(name) > len(self%spring%rule)) self%spring%rule(len(self%spring%rule):) = '~'
    end subroutine set_rule
 
-   !> Give the springs to the kinds of members of a frame and to its nodes.
+   !> Give the springs to the kinds of members of a frame and to its nodes, layered ones with their layers;
+   !> refuse layers that belong to no spring.
    subroutine give_springs(list, frame, messages)
       type(entry_list), intent(in) :: list
       type(frame_record), intent(inout) :: frame
@@ -126,7 +130,7 @@ contains
       call frame%open_group('')
       known = messages%count
       call check_ids(list, messages)
-      allocate (spring(count([(all(list%entry(i)%group /= spring_groups(4:)), i=1, list%count)])))
+      allocate (spring(count([(all(list%entry(i)%group /= layer_groups), i=1, list%count)])))
       n = 0
       do i = 1, list%count
          associate (entry => list%entry(i))
@@ -145,7 +149,7 @@ contains
                                        'remove the layers')
                end if
             end if
-            if (any(entry%group == spring_groups(4:))) cycle
+            if (any(entry%group == layer_groups)) cycle
             n = n + 1
             spring(n) = entry%frame_spring
             if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle

@@ -340,7 +340,7 @@ def _row(
         return replace(row, status="no history", error=str(error)), None
     assert path is not None
     force = np.full(path.size, np.nan)
-    found: dict[str, Any] = {}
+    outcome: dict[str, Any] = {}
     begin = time.perf_counter()
     with recorded() as caught:
         try:
@@ -349,17 +349,19 @@ def _row(
                 column = column_of(specimen, model, **options)  # type: ignore[call-overload]
             result = cyclic(column, displacement=path)
         except SolveError as stop:
-            found = {"status": "failed" if stop.result is None else "stopped", "error": str(stop)}
+            outcome = {"status": "failed" if stop.result is None else "stopped", "error": str(stop)}
             result = stop.result
         except Exception as fault:
             # A fault in one model is a row of the table and does not end the others.
             kind = "" if isinstance(fault, RbsdemError) else f"{type(fault).__name__}: "
-            found, result = {"status": "failed", "error": f"{kind}{fault}"}, None
+            outcome, result = {"status": "failed", "error": f"{kind}{fault}"}, None
         if isinstance(result, ColumnResult):
             force[: result.force.size] = result.force
             if limit_states:
-                found["limit_states"] = {s.name: abs(s.drift) for s in result.limit_states()}
-    row = replace(row, displacement=path, force=force, seconds=time.perf_counter() - begin, **found)
+                outcome["limit_states"] = {s.name: abs(s.drift) for s in result.limit_states()}
+    row = replace(
+        row, displacement=path, force=force, seconds=time.perf_counter() - begin, **outcome
+    )
     if test is not None:
         comparison = compare((path, force) if result is None else result, test)
         row = replace(row, comparison=comparison)
@@ -472,14 +474,14 @@ def _neighbours(
         section = draw(specimen).section
     hinge = section, specimen.length, specimen.axial_load
     near: list[Neighbour] = []
-    for one in nearest(*hinge, tests, max(len(tests), 1), but=specimen):
-        own = one.prediction or known.get(one.specimen)
-        if own is None:
-            (own,) = predict([one.specimen], model, **options)
-            known[one.specimen] = own
+    for neighbour in nearest(*hinge, tests, max(len(tests), 1), but=specimen):
+        prediction = neighbour.prediction or known.get(neighbour.specimen)
+        if prediction is None:
+            (prediction,) = predict([neighbour.specimen], model, **options)
+            known[neighbour.specimen] = prediction
         # A test whose history cannot be read says nothing.
-        if own.comparison is not None:
-            near.append(replace(one, prediction=replace(own, band=None, nearest=())))
+        if prediction.comparison is not None:
+            near.append(replace(neighbour, prediction=replace(prediction, band=None, nearest=())))
         if len(near) == number:
             break
     return tuple(near)
@@ -524,10 +526,10 @@ def nearest(
     _arguments.integer(n, "nearest: n", least=1)
     features = features_of(section, height, axial_load)
     is_round = isinstance(section, CircularSection) if but is None else _is_round(but)
-    found = []
-    for one in tests:
-        row = one if isinstance(one, Prediction) else None
-        other = checked_specimen(one.specimen if isinstance(one, Prediction) else one)
+    neighbours = []
+    for test in tests:
+        row = test if isinstance(test, Prediction) else None
+        other = checked_specimen(test.specimen if isinstance(test, Prediction) else test)
         if (row is None and other.path is None) or (row is not None and row.comparison is None):
             continue
         # A row with the history of another one is an error of the database.
@@ -540,17 +542,17 @@ def nearest(
         except InputError:
             continue
         apart = [(a - b) / scale for a, b, scale in zip(features, there, _SCALES, strict=True)]
-        found.append(Neighbour(other, math.hypot(*apart), row))
-    return tuple(sorted(found, key=lambda one: one.distance)[:n])
+        neighbours.append(Neighbour(other, math.hypot(*apart), row))
+    return tuple(sorted(neighbours, key=lambda neighbour: neighbour.distance)[:n])
 
 
-def _same(one: Specimen, other: Specimen) -> bool:
+def _same(test: Specimen, other: Specimen) -> bool:
     """Whether two rows are the same test."""
-    if one is other or one == other:
+    if test is other or test == other:
         return True
-    if one.peer_id is not None and one.peer_id in (other.peer_id, other.duplicate_of):
+    if test.peer_id is not None and test.peer_id in (other.peer_id, other.duplicate_of):
         return True
-    return one.duplicate_of is not None and one.duplicate_of == other.peer_id
+    return test.duplicate_of is not None and test.duplicate_of == other.peer_id
 
 
 def _is_round(specimen: Specimen) -> bool:

@@ -102,14 +102,16 @@ class Case:
         """The method in time and its settings that were given; nothing for a static case."""
         if self.method == "static":
             return Solver()
-        given = {"method": self.method} | self.settings
-        return cast(Solver, {name: given[name] for name in Solver.__annotations__ if name in given})
+        settings = {"method": self.method} | self.settings
+        return cast(
+            Solver, {name: settings[name] for name in Solver.__annotations__ if name in settings}
+        )
 
     @property
     def loads(self) -> dict[str, Array]:
         """The loadings that are there, by the names of the attributes."""
-        given = {name: getattr(self, name) for name in _DRIVES}
-        return {name: values for name, values in given.items() if values is not None}
+        histories = {name: getattr(self, name) for name in _DRIVES}
+        return {name: values for name, values in histories.items() if values is not None}
 
     def run(
         self, column: Structure | None = None, **changes: Any
@@ -134,15 +136,15 @@ class Case:
                 "the case has no loading; give it a group &loading, or run its column: "
                 "rbsdem.cyclic(case.column, ...), rbsdem.time_history(case.column, ...)"
             )
-        given: dict[str, Any] = self.loads | self.settings
+        keywords: dict[str, Any] = self.loads | self.settings
         try:
             if self.method == "static":
                 result: ColumnResult | FrameResult | BuildingResult = cyclic(
-                    column, **(given | changes)
+                    column, **(keywords | changes)
                 )
             else:
-                given |= {"time": self.time, "method": self.method}
-                result = time_history(column, **(given | changes))
+                keywords |= {"time": self.time, "method": self.method}
+                result = time_history(column, **(keywords | changes))
         except SolveError as error:
             if error.result is not None:
                 error.result = replace(error.result, case=self)
@@ -214,23 +216,23 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     statement, time, values, acting = _core.read_case(path)
     groups: dict[str, list[dict[str, Any]]] = {}
     drawings: list[dict[str, list[dict[str, Any]]]] = []
-    for name, given in _core.groups(statement):
-        groups.setdefault(name, []).append(given)
+    for name, values_of in _core.groups(statement):
+        groups.setdefault(name, []).append(values_of)
         # Groups of a drawing follow it.
         drawings += [{}] if name == "drawing" else []
         if drawings:
-            drawings[-1].setdefault(name, []).append(given)
+            drawings[-1].setdefault(name, []).append(values_of)
     # Of springs and of what a drawing has there are several.
-    found = {name: given[-1] for name, given in groups.items()}
-    settings = _core.typed("analysis", found.get("analysis", {}))
-    settings |= _core.typed("output", found.get("output", {}))
+    last_of = {name: values_of[-1] for name, values_of in groups.items()}
+    settings = _core.typed("analysis", last_of.get("analysis", {}))
+    settings |= _core.typed("output", last_of.get("output", {}))
     # The histories already end at the duration.
     settings.pop("duration", None)
     more: dict[str, Any] = {
-        "target": _core.typed("target", found.get("target", {})),
-        "records": _core.typed("records", found.get("records", {})),
+        "target": _core.typed("target", last_of.get("target", {})),
+        "records": _core.typed("records", last_of.get("records", {})),
         **{
-            name: [_core.typed(name, given) for given in groups.get(name, [])]
+            name: [_core.typed(name, values_of) for values_of in groups.get(name, [])]
             for name in ("assess", "limit")
         },
         "files": {name: settings.pop(name) for name in ("file", "state") if name in settings},
@@ -245,8 +247,8 @@ def read_case(path: str | os.PathLike[str]) -> Case:
             frame: Frame = building_in_plan(groups, drawings)
         else:
             frame = building_of(groups) if "plane" in groups else frame_of(groups, drawings)
-        return _case_of(frame, found, settings, time, values, acting, more)
-    column = _core.typed("column", found["column"])
+        return _case_of(frame, last_of, settings, time, values, acting, more)
+    column = _core.typed("column", last_of["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))
     beneath = {name: column.pop(f"{name}_0", None) for name in SPRING_GROUPS}
     footing = {
@@ -256,8 +258,8 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     }
     if beneath["shear"] is not None:
         column["footing"] = Footing(**beneath, **footing)
-    if "damping" in found:
-        column["damping"] = Damping(**_core.typed("damping", found["damping"]))
+    if "damping" in last_of:
+        column["damping"] = Damping(**_core.typed("damping", last_of["damping"]))
     column = {"mass": None} | column
     made: Column
     if "drawing" not in groups:
@@ -266,12 +268,12 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         made = drawn_column(groups, column)
     else:
         made = layered_column(drawing_of(groups), column)
-    return _case_of(made, found, settings, time, values, acting, more)
+    return _case_of(made, last_of, settings, time, values, acting, more)
 
 
 def _case_of(
     structure: Column | Frame,
-    found: dict[str, dict[str, Any]],
+    groups: dict[str, dict[str, Any]],
     settings: dict[str, Any],
     time: Array,
     values: Array,
@@ -282,13 +284,13 @@ def _case_of(
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
     }
-    title, method = found.get("case", {}).get("title", ""), settings.pop("method")
+    title, method = groups.get("case", {}).get("title", ""), settings.pop("method")
     return Case(title, structure, method, time, **loads, settings=settings, **more)
 
 
-def _texts(given: dict[str, Any]) -> dict[str, Any]:
+def _texts(values: dict[str, Any]) -> dict[str, Any]:
     """Return values whose texts are passed on unchanged."""
-    return {k: _core.Text(v) if isinstance(v, str) else v for k, v in given.items()}
+    return {k: _core.Text(v) if isinstance(v, str) else v for k, v in values.items()}
 
 
 def case_of_text(text: str) -> Case:
@@ -336,12 +338,12 @@ def case_of(result: Result) -> Case:
     """
     if isinstance(result.case, Case):
         return result.case
-    given = {name: value for name, value in result.call.items() if name not in _NO_SETTINGS}
-    loads = {name: given.pop(name, None) for name in _DRIVES}
+    settings = {name: value for name, value in result.call.items() if name not in _NO_SETTINGS}
+    loads = {name: settings.pop(name, None) for name in _DRIVES}
     size = next(values.size for values in loads.values() if values is not None)
-    method = given.pop("method", "auto") if result.dynamic else "static"
-    time = given.pop("time", np.arange(float(size)))
-    return Case("", result.structure, method, time, **loads, settings=given)
+    method = settings.pop("method", "auto") if result.dynamic else "static"
+    time = settings.pop("time", np.arange(float(size)))
+    return Case("", result.structure, method, time, **loads, settings=settings)
 
 
 #: Errors that readers of damaged archives raise.
@@ -422,7 +424,7 @@ def _result(
             with contextlib.suppress(InputError):
                 drawn = case_of_text(about["drawing"] + analysis).column
                 structure = drawn if drawn == structure else structure
-    own = {name: _together(about[name], arrays) for name in SAVED}
+    saved = {name: _together(about[name], arrays) for name in SAVED}
     kind: Any = FrameResult if isinstance(structure, Frame) else ColumnResult
     kind = BuildingResult if isinstance(structure, Building) else kind
-    return kind(structure=structure, case=case, **own)  # type: ignore[no-any-return]
+    return kind(structure=structure, case=case, **saved)  # type: ignore[no-any-return]

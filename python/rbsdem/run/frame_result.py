@@ -208,28 +208,28 @@ class FrameResult(Result):
         Clockwise rotations of the faces against the line between the ends of the clear length.
         """
         parts = self.frame.parts
-        found = np.empty((self.time.size, len(parts.members), 2))
+        rotations = np.empty((self.time.size, len(parts.members), 2))
         # Rotations of nodes are those of their columns.
         panels = {
-            one.member: self.springs["rotation"][:, i]
-            for i, one in enumerate(parts.springs_of("flexure"))
-            if one.group == "panel"
+            spring.member: self.springs["rotation"][:, i]
+            for i, spring in enumerate(parts.springs_of("flexure"))
+            if spring.group == "panel"
         }
-        for i, one in enumerate(self.frame.geometry.values()):
-            for j, node in enumerate((one.start, one.end)):
-                beside = 0.0 if one.upright else panels.get(parts.nodes[node], 0.0)
-                found[:, i, j] = self.node_rotation[:, node] - beside
-            found[:, i] -= self._chord(one, found[:, i])[:, None]
-        return found
+        for i, member in enumerate(self.frame.geometry.values()):
+            for j, node in enumerate((member.start, member.end)):
+                beside = 0.0 if member.upright else panels.get(parts.nodes[node], 0.0)
+                rotations[:, i, j] = self.node_rotation[:, node] - beside
+            rotations[:, i] -= self._chord(member, rotations[:, i])[:, None]
+        return rotations
 
-    def _chord(self, one: MemberGeometry, turned: Array | None = None) -> Array:
+    def _chord(self, member: MemberGeometry, turned: Array | None = None) -> Array:
         """Return the clockwise rotation of the chord of a member [rad]."""
-        nodes = [one.start, one.end]
+        nodes = [member.start, member.end]
         turned = self.node_rotation[:, nodes] if turned is None else turned
-        across = self.x[:, nodes] * one.normal[0] + self.y[:, nodes] * one.normal[1]
-        return np.asarray((np.diff(across)[:, 0] - turned @ np.array(one.rigid)) / one.clear)
+        across = self.x[:, nodes] * member.normal[0] + self.y[:, nodes] * member.normal[1]
+        return np.asarray((np.diff(across)[:, 0] - turned @ np.array(member.rigid)) / member.clear)
 
-    def _end_forces(self, one: MemberGeometry, at: int) -> tuple[Array, Array]:
+    def _end_forces(self, member: MemberGeometry, at: int) -> tuple[Array, Array]:
         """Return the forces of a member on the nodes at its two ends, each shape (rows, 3).
 
         Along x and upward [N], and clockwise [N m], in equilibrium with the loads on the member,
@@ -239,17 +239,18 @@ class FrameResult(Result):
         lean = np.zeros(self.time.size)
         if self.frame.kinematics == "pdelta":
             # What a lost member carried leans with the frame still.
-            lean = self.frame.parts.compression[at] * self._chord(one)
-        found = []
+            lean = self.frame.parts.compression[at] * self._chord(member)
+        forces = []
         for j, sign in enumerate((1.0, -1.0)):
             across = -sign * (self.end_shear[:, at, j] + lean)
             # The load of the rigid length is carried by the node.
             node = (
-                self.member_axial[:, at, None] * (-sign * one.axis) + across[:, None] * one.normal
+                self.member_axial[:, at, None] * (-sign * member.axis)
+                + across[:, None] * member.normal
             )
-            node[:, 1] -= one.load * abs(one.axis[0]) * one.rigid[j]
-            found.append(np.column_stack((node, -ends[j] + across * one.rigid[j] * sign)))
-        return found[0], found[1]
+            node[:, 1] -= member.load * abs(member.axis[0]) * member.rigid[j]
+            forces.append(np.column_stack((node, -ends[j] + across * member.rigid[j] * sign)))
+        return forces[0], forces[1]
 
     @cached_property
     def reactions(self) -> dict[str, Array]:
@@ -259,16 +260,18 @@ class FrameResult(Result):
         node and its loads; in time without forces of damping.
         """
         frame, parts = self.frame, self.frame.parts
-        found = {name: np.zeros((self.time.size, 3)) for name in frame.supports}
-        own = {node.name: node for node in frame.nodes}
-        for name in found.keys() & own.keys():
-            node = own[name]
-            found[name] -= np.array([node.load_x, node.load_y, node.load_moment])
-        for at, one in enumerate(frame.geometry.values()):
-            for i, force in zip((one.start, one.end), self._end_forces(one, at), strict=True):
-                if parts.nodes[i] in found:
-                    found[parts.nodes[i]] -= force
-        return found
+        reactions = {name: np.zeros((self.time.size, 3)) for name in frame.supports}
+        nodes = {node.name: node for node in frame.nodes}
+        for name in reactions.keys() & nodes.keys():
+            node = nodes[name]
+            reactions[name] -= np.array([node.load_x, node.load_y, node.load_moment])
+        for at, member in enumerate(frame.geometry.values()):
+            for i, force in zip(
+                (member.start, member.end), self._end_forces(member, at), strict=True
+            ):
+                if parts.nodes[i] in reactions:
+                    reactions[parts.nodes[i]] -= force
+        return reactions
 
     @cached_property
     def base_moment(self) -> Array:
@@ -276,14 +279,14 @@ class FrameResult(Result):
 
         About the ground below the resultant of the dead load, with the second-order moment.
         """
-        parts, own = self.frame.parts, {node.name: node for node in self.frame.nodes}
+        parts, nodes = self.frame.parts, {node.name: node for node in self.frame.nodes}
         weights = [
-            (one.load * abs(parts.x[one.end] - parts.x[one.start]), one)
-            for one in self.frame.geometry.values()
+            (member.load * abs(parts.x[member.end] - parts.x[member.start]), member)
+            for member in self.frame.geometry.values()
         ]
-        loads = [(w, 0.5 * (parts.x[one.start] + parts.x[one.end])) for w, one in weights]
+        loads = [(w, 0.5 * (parts.x[member.start] + parts.x[member.end])) for w, member in weights]
         loads += [
-            (-own[n].load_y, x) for n, x in zip(parts.nodes, parts.x, strict=True) if n in own
+            (-nodes[n].load_y, x) for n, x in zip(parts.nodes, parts.x, strict=True) if n in nodes
         ]
         total = sum(load for load, _ in loads)
         about = sum(load * x for load, x in loads) / total if total else float(parts.x.mean())
@@ -302,13 +305,13 @@ class FrameResult(Result):
         of the two lines up to the largest force.
         """
         answer = _core.evaluate("modes", made=self.frame._made, count=1)
-        found = {"uncracked": 2 * np.pi / float(answer.values[1])}
+        periods = {"uncracked": 2 * np.pi / float(answer.values[1])}
         if not self.dynamic:
             u, v = self.displacement - self.displacement[0], self.base_shear - self.base_shear[0]
             lines = Envelope(1, np.abs(u), np.abs(v)).idealise("asce_41")
             mass = float(answer.rows[0, 3 * self.frame.n])
-            found["secant at yield"] = 2 * np.pi * float(np.sqrt(mass / lines.stiffness))
-        return found
+            periods["secant at yield"] = 2 * np.pi * float(np.sqrt(mass / lines.stiffness))
+        return periods
 
     @cached_property
     def storey_shear(self) -> Array:
@@ -343,16 +346,16 @@ class FrameResult(Result):
         level = np.array([parts.y[parts.floor == i].mean() for i in range(count + 1)])
         cuts = level[:-1] + 1e-3 * np.diff(level)
         shear, weight = np.zeros((self.time.size, count)), np.zeros(count)
-        for at, one in enumerate(self.frame.geometry.values()):
-            if names is not None and one.name not in names:
+        for at, member in enumerate(self.frame.geometry.values()):
+            if names is not None and member.name not in names:
                 continue
-            upward = parts.y[one.start] < parts.y[one.end]
-            low, high = sorted((parts.y[one.start], parts.y[one.end]))
+            upward = parts.y[member.start] < parts.y[member.end]
+            low, high = sorted((parts.y[member.start], parts.y[member.end]))
             through = (low < cuts) & (cuts < high)
             if through.any():
-                lower = self._end_forces(one, at)[0 if upward else 1]
+                lower = self._end_forces(member, at)[0 if upward else 1]
                 shear[:, through] += lower[:, :1]
-                weight[through] += parts.compression[at] * abs(one.axis[1])
+                weight[through] += parts.compression[at] * abs(member.axis[1])
         return shear, weight
 
     def _storeys(self) -> tuple[float, ...]:
@@ -387,7 +390,9 @@ class FrameResult(Result):
         path, ductility = self._measured, []
         for i in numbers:
             kept = path._springs[i][1][: path._lost_at.get(name)]
-            yields = [one.deformation for one, _ in path._reached[i] if one.name == "yield"]
+            yields = [
+                landmark.deformation for landmark, _ in path._reached[i] if landmark.name == "yield"
+            ]
             largest = float(np.abs(kept).max(initial=0.0))
             ductility.append(largest / min(yields) if yields else np.nan)
         rows = (self.time.size, 0)
@@ -409,13 +414,13 @@ class FrameResult(Result):
     def end_shear(self) -> Array:
         """Shear forces at the ends of members, shape (rows, members, 2) [N]."""
         where = self.frame.geometry.values()
-        clear, load = np.array([(one.clear, one.across_load) for one in where]).T
+        clear, load = np.array([(member.clear, member.across_load) for member in where]).T
         sway = (self.moment_from + self.moment_to) / clear
         return np.asarray(np.stack([sway + load * clear * s for s in (-0.5, 0.5)], axis=2))
 
     def _plastic(self, name: str, turned: Array) -> Array:
         """Return rotations beyond those at the first yield of an end to each side."""
-        found, path = np.zeros_like(turned), self._measured
+        plastic, path = np.zeros_like(turned), self._measured
         at = self.frame.parts.members.index(name)
         for i in self._springs_in.get(name, []):
             spring = path._springs[i][0]
@@ -428,8 +433,8 @@ class FrameResult(Result):
                     way = np.sign(first)
                     beyond = np.maximum(way * (turned[:, end] - first), 0.0)
                     beyond[self.time < _at(row, path.time)] = 0.0
-                    found[:, end] += way * beyond
-        return found
+                    plastic[:, end] += way * beyond
+        return plastic
 
     @property
     def _measured(self) -> FrameResult:
@@ -450,11 +455,11 @@ class FrameResult(Result):
     @cached_property
     def _springs_in(self) -> dict[str, list[int]]:
         """Numbers of the springs of each member in that list."""
-        found: dict[str, list[int]] = {}
+        numbers: dict[str, list[int]] = {}
         for i, (spring, _, _) in enumerate(self._springs):
             if spring.group != "panel":
-                found.setdefault(spring.member, []).append(i)
-        return found
+                numbers.setdefault(spring.member, []).append(i)
+        return numbers
 
     @cached_property
     def _reached(self) -> list[list[tuple[Landmark, float | None]]]:
@@ -470,7 +475,7 @@ class FrameResult(Result):
         }
         joints, landmarks, lost = self.frame.joints, self.frame.landmarks, self._lost_at
         watched: dict[int, list[Criterion]] = {}
-        found = []
+        first_rows = []
         for spring, whole, _ in self._springs:
             values = whole[: lost.get(spring.member)]
             reached = [
@@ -485,8 +490,8 @@ class FrameResult(Result):
                     watched[id(made)] = joint_criteria(kind, spring.position, made)
                 opening = openings[spring.member, spring.position][: values.size]
                 reached += _rows_of_layers(watched[id(made)], opening, values)
-            found.append(reached)
-        return found
+            first_rows.append(reached)
+        return first_rows
 
     @cached_property
     def events(self) -> LimitStates:
@@ -501,8 +506,8 @@ class FrameResult(Result):
         its rows.
         """
         path = self._measured
-        found = path._found_events()
-        times, own_times, kept = np.array([at for _, at, _ in found]), path.time, self.time
+        reached = path._found_events()
+        times, own_times, kept = np.array([at for _, at, _ in reached]), path.time, self.time
         rows = np.searchsorted(kept, times - 1e-12 * np.abs(times))
         rows = np.minimum(rows, kept.size - 1)
         columns = (path.displacement, path.drift, path.loop_force)
@@ -510,14 +515,16 @@ class FrameResult(Result):
         return LimitStates(
             [
                 LimitState(name, row, at, *values, **where)
-                for (name, at, where), row, values in zip(found, rows.tolist(), there, strict=True)
+                for (name, at, where), row, values in zip(
+                    reached, rows.tolist(), there, strict=True
+                )
             ],
             self,
         )
 
     def _found_events(self) -> list[tuple[str, float, dict[str, Any]]]:
         """Return name, time and place of the limit states that the rows reach."""
-        found: list[tuple[str, float, dict[str, Any]]] = []
+        reached_states: list[tuple[str, float, dict[str, Any]]] = []
         times, struts = self.time, self.frame.struts
         for (spring, _, _), reached in zip(self._springs, self._reached, strict=True):
             rows = [(point, row) for point, row in reached if row is not None]
@@ -526,11 +533,13 @@ class FrameResult(Result):
             group = "infill" if spring.member in struts else spring.group
             end = "" if group == "infill" else spring.end
             where = {"member": spring.member, "group": group, "end": end}
-            found += [
+            reached_states += [
                 (_event_name(spring, point), _at(row, times), where | {"side": point.side})
                 for point, row in rows
             ]
-        sheared = {where["member"]: at for what, at, where in reversed(found) if what == FAILS}
+        sheared = {
+            where["member"]: at for what, at, where in reversed(reached_states) if what == FAILS
+        }
         wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at.items()]
         # A member whose spring fails in shear is told by that.
         wholes += [
@@ -550,15 +559,15 @@ class FrameResult(Result):
                 drift = abs(float(self._chord(self.frame.geometry[name])[row]))
                 low, high = AXIAL_FAILURE_FACTORS
                 about |= {"lower": low * drift, "upper": high * drift}
-            found.append((what, at, about))
-        return found
+            reached_states.append((what, at, about))
+        return reached_states
 
     def _failures(self, factor: float = 1.0) -> list[tuple[str, str, float]]:
         """Return members that fail in shear, and that lose their axial load on a static path.
 
         With a factor of the drift at axial failure those that would lose it there, in time too.
         """
-        found, lost, times, landmarks = [], self._lost_at, self.time, self.frame.landmarks
+        failures, lost, times, landmarks = [], self._lost_at, self.time, self.frame.landmarks
         for at, (name, kind) in enumerate(self.frame.kinds.items()):
             if kind.failure_drift is None or kind.failure_load is None:
                 continue
@@ -570,14 +579,14 @@ class FrameResult(Result):
                         failed |= point.side * values >= _REACHED * point.deformation
             rows = np.flatnonzero(failed[: lost.get(name)])
             if rows.size:
-                found.append((name, FAILS, float(times[rows[0]])))
+                failures.append((name, FAILS, float(times[rows[0]])))
             load = np.maximum(self.member_axial[:, at], 0.0)
             limit = factor * kind.failure_drift
             falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= limit)
             fallen = np.flatnonzero(falls & np.logical_or.accumulate(failed))
             if fallen.size and (factor != 1.0 or not self.dynamic):
-                found.append((name, "lost", float(times[fallen[0]])))
-        return found
+                failures.append((name, "lost", float(times[fallen[0]])))
+        return failures
 
     def may_have_lost(self, most: float = math.inf) -> list[str]:
         """Return members beyond the lower end of the interval of their drift at axial failure.
@@ -667,7 +676,7 @@ def shear_span_note(result: FrameResult) -> str:
     At the largest shear force of each direction, where it is more than half of that strength, of a
     wall a tenth: the joint at its foot is for that M/V too.
     """
-    frame, found = result.frame, []
+    frame, off_spans = result.frame, []
     moments = np.stack((result.moment_from, result.moment_to), axis=2)
     for at, (name, kind) in enumerate(frame.kinds.items()):
         if kind.shear_spans is None:
@@ -688,17 +697,17 @@ def shear_span_note(result: FrameResult) -> str:
                 if shear[row] > telling * (strength or spring.f_y) and span > 0:
                     off = span / made
                     if abs(off - 1.0) > _OFF_SPAN:
-                        found.append((abs(math.log(off)), name, end, span, made, walls))
-    if not found:
+                        off_spans.append((abs(math.log(off)), name, end, span, made, walls))
+    if not off_spans:
         return ""
-    _, name, end, span, made, walls = max(found)
+    _, name, end, span, made, walls = max(off_spans)
     if walls:
         return (
             f"member {name}: at the largest shear force M/V at the foot of the wall is "
             f"{span:.3g} m, and its springs were made for {made:.3g} m; give wall_spans = "
             f"{span:.3g} (shear_span of section.wall_members)"
         )
-    more = f", and {len(found) - 1} more are off by a fifth" if len(found) > 1 else ""
+    more = f", and {len(off_spans) - 1} more are off by a fifth" if len(off_spans) > 1 else ""
     return (
         f"member {name}: at the largest shear force of its {end} M/V is {span:.3g} m, and its "
         f"strength in shear was found for {made:.3g} m{more}; make it anew with shear_spans of "

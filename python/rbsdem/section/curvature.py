@@ -206,11 +206,11 @@ def range_warnings(section: Section, height: float, axial_load: float) -> tuple[
 
 
 def _outside(
-    found: dict[str, float], ranges: dict[str, tuple[float, float, float, str]], what: str
+    values: dict[str, float], ranges: dict[str, tuple[float, float, float, str]], what: str
 ) -> list[str]:
     """Return a remark for each value outside its range."""
     remarks = []
-    for name, value in found.items():
+    for name, value in values.items():
         low, high, unit, label = ranges[name]
         if not low * (1 - _SLACK) <= value <= high * (1 + _SLACK):
             remarks.append(
@@ -221,13 +221,13 @@ def _outside(
 
 
 def _wall_warnings(section: Section, span: float, axial_load: float) -> tuple[str, ...]:
-    found = {
+    values = {
         "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
         "concrete strength": section.concrete.fc,
         "length over thickness": section.depth / section.width,
         "shear span over length": span / section.depth,
     }
-    remarks = _outside(found, RANGE_OF_WALLS, "the tests of walls")
+    remarks = _outside(values, RANGE_OF_WALLS, "the tests of walls")
     if section.depth > RANGE_OF_WALLS["length over thickness"][1] * section.width:
         remarks.append("the wall may buckle out of its plane, which is not in the model")
     if section.ties is None:

@@ -169,29 +169,31 @@ class Building(Frame):
         plan: PlanDrawing | None = None,
     ) -> None:
         planes = _planes(frames, names)
-        floors = max(int(one.frame.parts.floor.max(initial=0)) for one in planes)
+        floors = max(int(plane.frame.parts.floor.max(initial=0)) for plane in planes)
         if floors == 0:
             raise InputError(
                 "building: its frames have no floors; give them grids, or their nodes floors "
                 "(FrameNode(floor=...))"
             )
-        given: dict[str, Any] = {"frames": tuple(frames), "names": names, "centres": centres}
-        given |= {"floor_mass": floor_mass, "inertia": inertia, "kinematics": kinematics}
-        given |= {"pattern": pattern, "direction": direction, "collapse": collapse}
-        given |= {"damping": damping, "control_node": control_node, "plan": plan}
+        keywords: dict[str, Any] = {"frames": tuple(frames), "names": names, "centres": centres}
+        keywords |= {"floor_mass": floor_mass, "inertia": inertia, "kinematics": kinematics}
+        keywords |= {"pattern": pattern, "direction": direction, "collapse": collapse}
+        keywords |= {"damping": damping, "control_node": control_node, "plan": plan}
         put = self.__dict__.__setitem__
-        put("_given", given)
+        put("_given", keywords)
         put("planes", planes)
         put("plan", plan)
         put("direction", _arguments.number(direction, "building: direction"))
         put("centres", _by_floor(centres, floors, "centres", 2))
         put("plan_mass", _by_floor(floor_mass, floors, "floor_mass")[:, 0])
-        laid = [_laid(one) for one in planes]
+        laid = [_laid(plane) for plane in planes]
         rises, axial = _shared(planes, laid)
         put("rises", rises)
         put("axial_of", axial)
-        own = _inertia_of(planes, laid, self.centres)
-        put("inertia", own if inertia is None else _by_floor(inertia, floors, "inertia")[:, 0])
+        of_floors = _inertia_of(planes, laid, self.centres)
+        put(
+            "inertia", of_floors if inertia is None else _by_floor(inertia, floors, "inertia")[:, 0]
+        )
         shared = {*axial, *axial.values()}
         super().__init__(
             kinematics=kinematics,
@@ -199,12 +201,12 @@ class Building(Frame):
             collapse=collapse,
             control_node=control_node,
             nodes=[node for nodes, _ in laid for node in nodes],
-            members=[_held_up(one, shared) for _, members in laid for one in members],
+            members=[_held_up(plane, shared) for _, members in laid for plane in members],
             damping=damping,
             losses={
-                f"{one.name}:{member}": time
-                for one in planes
-                for member, time in (one.frame.losses or {}).items()
+                f"{plane.name}:{member}": time
+                for plane in planes
+                for member, time in (plane.frame.losses or {}).items()
             }
             or None,
         )
@@ -293,8 +295,8 @@ class Building(Frame):
         InputError
             With what is wrong and where.
         """
-        given = {name: value for name, value in locals().items() if name not in _NOT_DRAWN}
-        building: Building = PlanDrawing.checked(**given).building(cls, more)
+        drawing = {name: value for name, value in locals().items() if name not in _NOT_DRAWN}
+        building: Building = PlanDrawing.checked(**drawing).building(cls, more)
         return building
 
     def changed(self, **changes: Any) -> Building:
@@ -314,7 +316,7 @@ class Building(Frame):
     @cached_property
     def corners(self) -> Array:
         """Corners of the smallest rectangle about all frames in plan, shape (4, 2) [m]."""
-        places = np.vstack([one.places(np.unique(one.frame.parts.x)) for one in self.planes])
+        places = np.vstack([plane.places(np.unique(plane.frame.parts.x)) for plane in self.planes])
         (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
         return np.array([(west, south), (east, south), (east, north), (west, north)])
 
@@ -323,27 +325,27 @@ class Building(Frame):
         known: dict[str, Frame] = vars(self).setdefault("_frames", {})
         if name in known:
             return known[name]
-        own, prefix = self.plane(name).frame, f"{name}:"
+        frame, prefix = self.plane(name).frame, f"{name}:"
         of_all = dict(zip(self.parts.members, self.parts.compression.tolist(), strict=True))
-        compression = np.array([of_all[prefix + member] for member in own.parts.members])
-        found = copy(own)
-        _arguments.put(found, kinematics=self.kinematics)
-        vars(found)["parts"] = replace(own.parts, compression=compression, mass=self.parts.mass)
-        vars(found)["geometry"] = own.geometry
-        vars(found)["kinds"] = {
+        compression = np.array([of_all[prefix + member] for member in frame.parts.members])
+        inside = copy(frame)
+        _arguments.put(inside, kinematics=self.kinematics)
+        vars(inside)["parts"] = replace(frame.parts, compression=compression, mass=self.parts.mass)
+        vars(inside)["geometry"] = frame.geometry
+        vars(inside)["kinds"] = {
             member: with_rigid_end(self.kinds[prefix + member], kind.rigid_end)
-            for member, kind in own.kinds.items()
+            for member, kind in frame.kinds.items()
         }
-        return known.setdefault(name, found)
+        return known.setdefault(name, inside)
 
     def _state(self, *cells: Any, **more: Any) -> _core.Statement:
         """Return the groups of a case file."""
-        own: dict[str, Any]
+        values: dict[str, Any]
         parts: list[_core.Statement | Group] = [("frame", self._settings())]
         for plane in self.planes:
-            own = {"name": _core.Text(plane.name), "angle": plane.angle or None}
-            own |= {"arm": plane.arm or None, "along": plane.along}
-            parts.append(("plane", own))
+            values = {"name": _core.Text(plane.name), "angle": plane.angle or None}
+            values |= {"arm": plane.arm or None, "along": plane.along}
+            parts.append(("plane", values))
         for i, (mass, inertia, centre) in enumerate(
             zip(self.plan_mass, self.inertia, self.centres, strict=True)
         ):
@@ -392,13 +394,13 @@ class Building(Frame):
         frames = []
         for plane in self.planes:
             names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
-            own = {
+            changed = {
                 name: kinds[names[stated(kind)]]
                 for name, kind in plane.frame.named_kinds.items()
                 if names.get(stated(kind)) in kinds
             }
             more = () if plane.along is None else (plane.along,)
-            frames.append((plane.frame.with_kinds(own), plane.angle, plane.arm, *more))
+            frames.append((plane.frame.with_kinds(changed), plane.angle, plane.arm, *more))
         return self.changed(frames=frames, plan=None)
 
     def without(self, *members: str) -> Building:
@@ -415,27 +417,29 @@ class Building(Frame):
         return self.changed(frames=frames, plan=None)
 
 
-def _rebuilt(kind: type[Building], given: dict[str, Any]) -> Building:
-    return kind(**given)
+def _rebuilt(kind: type[Building], keywords: dict[str, Any]) -> Building:
+    return kind(**keywords)
 
 
 def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
     """Return the frames in their places, with names."""
-    found: list[Plane] = []
-    given = list(_arguments.several(frames, "building: frames", "tuples (frame, angle, arm)"))
-    if not given:
+    planes: list[Plane] = []
+    tuples = list(_arguments.several(frames, "building: frames", "tuples (frame, angle, arm)"))
+    if not tuples:
         raise InputError("building: it has no frames; give tuples (frame, angle, arm)")
-    if names is not None and len(names) != len(given):
-        raise InputError(f"building: {len(names)} names for {len(given)} frames; give one for each")
+    if names is not None and len(names) != len(tuples):
+        raise InputError(
+            f"building: {len(names)} names for {len(tuples)} frames; give one for each"
+        )
     counts: dict[str, int] = {}
-    for i, one in enumerate(given):
-        if not (isinstance(one, tuple) and len(one) in (3, 4) and isinstance(one[0], Frame)):
+    for i, place in enumerate(tuples):
+        if not (isinstance(place, tuple) and len(place) in (3, 4) and isinstance(place[0], Frame)):
             raise InputError(
-                f"building: frames[{i}] = {_arguments.shown(one)} must be a tuple "
+                f"building: frames[{i}] = {_arguments.shown(place)} must be a tuple "
                 "(frame, angle, arm), or (frame, angle, arm, along) with the begin of its axis"
             )
-        numbers = [_arguments.number(value, f"building: frames[{i}]") for value in one[1:]]
-        frame: Frame = one[0]
+        numbers = [_arguments.number(value, f"building: frames[{i}]") for value in place[1:]]
+        frame: Frame = place[0]
         if frame.damped:
             raise InputError(
                 f"building: frames[{i}] has damping of its own; give it to the building"
@@ -443,18 +447,18 @@ def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
         letter = {0.0: "x", 90.0: "y"}.get(numbers[0] % 180.0, "frame")
         counts[letter] = counts.get(letter, 0) + 1
         name = str(names[i]) if names is not None else f"{letter}-{counts[letter]}"
-        if ":" in name or not name or name in [plane.name for plane in found]:
+        if ":" in name or not name or name in [plane.name for plane in planes]:
             raise InputError(
                 f"building: {name!r} is no name of a frame of its own; names differ and have "
                 "no colon"
             )
-        found.append(Plane(name, frame, *numbers))
-    return tuple(found)
+        planes.append(Plane(name, frame, *numbers))
+    return tuple(planes)
 
 
-def _by_floor(given: Any, floors: int, name: str, width: int = 1) -> Array:
+def _by_floor(numbers: Any, floors: int, name: str, width: int = 1) -> Array:
     """Return numbers or pairs for each floor, shape (floors, width)."""
-    values = _arguments.vector(given, f"building: {name}", shape="any")
+    values = _arguments.vector(numbers, f"building: {name}", shape="any")
     if values.size % width:
         raise InputError(
             f"building: {name} has {values.size} numbers; give two, or two for each floor"
@@ -474,7 +478,7 @@ def _by_floor(given: Any, floors: int, name: str, width: int = 1) -> Array:
 def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
     """Return the nodes and members of a frame in a building."""
     frame, parts, prefix = plane.frame, plane.frame.parts, f"{plane.name}:"
-    own = {node.name: node for node in frame.nodes}
+    stated_nodes = {node.name: node for node in frame.nodes}
     grid = _grid_masses(frame)
     panels = {spring.member for spring in parts.springs if spring.group == "panel"}
     ends = {parts.nodes[i] for i in parts.ends.ravel()}
@@ -484,7 +488,7 @@ def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
     ):
         if name not in ends and floor == 0:
             continue
-        node, mass = own.get(name, FrameNode(name)), grid.get(name, 0.0)
+        node, mass = stated_nodes.get(name, FrameNode(name)), grid.get(name, 0.0)
         support = frame.supports.get(name, "free")
         panel = (node.panel or frame.panel) if name in panels else None
         if node.moves_with and not floor > 0:

@@ -166,14 +166,14 @@ class Faults:
         owner = _OWNERS.get(owner, owner.partition(" ")[0])
         block = _block(self.groups, drawing)
         if line is not None and self.lines:
-            found = [max(bisect_right(self.lines, int(line)) - 1, 0)]
+            places = [max(bisect_right(self.lines, int(line)) - 1, 0)]
         elif row := re.match(r"section: (top|bottom|side): ", text):
-            found, key = [i for i in block if self.groups[i][1].get("face") == row[1]], "number"
+            places, key = [i for i in block if self.groups[i][1].get("face") == row[1]], "number"
         else:
-            found = [i for i in block if self.groups[i][0] == owner]
-            found = found or [i for i in block if key and key in self.groups[i][1]]
+            places = [i for i in block if self.groups[i][0] == owner]
+            places = places or [i for i in block if key and key in self.groups[i][1]]
         stated = _STATED.search(text)
-        for i in found:
+        for i in places:
             value = self.groups[i][1].get(key)
             if (value is None and "is missing" in text) or (
                 stated is not None and stated[1] == key and _is(value, float(stated[2]))
@@ -181,11 +181,11 @@ class Faults:
                 return f"{i}.{key}"
         # Else the key that it names, or the first word of it that is one.
         words = [*([stated[1]] if stated else []), key, *re.findall(r"\w+", text)]
-        for i in found:
+        for i in places:
             for word in words:
                 if word in self.groups[i][1]:
                     return f"{i}.{word}"
-        return f"{found[0]}.{key}" if found and key else ""
+        return f"{places[0]}.{key}" if places and key else ""
 
 
 def _is(value: object, number: float) -> bool:

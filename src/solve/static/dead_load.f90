@@ -49,6 +49,7 @@ contains
          if (allocated(error) .or. .not. frame%axially_loaded) exit
          last = change
          change = maxval(abs(frame%element(:frame%members)%compression - before))
+         ! Enough digits, or all that round-off leaves.
          if (change <= same_force*maxval(abs(before))) exit
          if (change <= nearly_same*maxval(abs(before)) .and. change > 0.5_wp*last) exit
       end do

@@ -206,6 +206,7 @@ contains
       integer :: i, t
 
       do i = 1, n
+         ! Place of the rotation; its displacement comes before it.
          t = 2*i
          band(1, t) = band(1, t) - axial(i)
          if (i == 1) cycle

@@ -450,9 +450,11 @@ contains
       end if
    end subroutine check_inertia
 
-   !> Slips and rotations, and openings, which nothing couples to them.
+   !> Dynamic stiffness before any spring yields, in parts that nothing couples: of slips and rotations, and
+   !> of openings where joints open.
    subroutine dynamic_parts(self, axial, part)
       class(column_type), intent(in) :: self
+      !> Whether the axial forces do second-order work
       logical, intent(in) :: axial
       class(dynamic_stiffness), allocatable, intent(out) :: part(:)
       type(sturm_chain), allocatable :: chain(:)
