@@ -65,13 +65,6 @@ def test_a_method_takes_the_settings_of_its_row(method: str, setting: str) -> No
             run()
 
 
-@pytest.mark.parametrize("method", IN_TIME)
-def test_every_method_takes_finite_rotations(method: str) -> None:
-    rbsdem.time_history(
-        column("finite"), time=[0.0, 0.01], force=np.array([0.0, 1.0]), method=method
-    )
-
-
 @pytest.mark.parametrize("method", ["rk4", *IMPLICIT])
 def test_a_method_takes_the_step_of_its_row(method: str) -> None:
     row = METHODS[method]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -74,15 +73,6 @@ def test_spectrum_of_a_rectangular_pulse(ratio):
     factor = 2.0 if ratio >= 0.5 else 2 * np.sin(np.pi * ratio)
     assert spectrum.pseudo_acceleration[0] == pytest.approx(factor, rel=1e-4)
     assert spectrum.acceleration[0] == pytest.approx(factor, rel=1e-4)
-
-
-def test_spectrum_of_a_half_sine_between_its_points():
-    """Chopra, section 4.8: td/T = 1, the peak during the pulse 1/(1 - r) sin(2 pi l/(1 + 1/r))."""
-    period, td = 1.0, 1.0
-    motion = GroundMotion(np.sin(np.pi * np.linspace(0, 1, 2001)), td / 2000)
-    r = period / (2 * td)
-    wanted = 1 / (1 - r) * np.sin(2 * np.pi / (1 + 1 / r))
-    assert motion.sa(period, 0.0) == pytest.approx(wanted, rel=1e-5)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.05, 1.0])
@@ -161,26 +151,6 @@ def test_intensities_against_eqsig():
         assert motion.pgv == pytest.approx(other.pgv, rel=1e-9)
         duration = eqsig.im.calc_sig_dur_vals(motion.acceleration, motion.dt)
         assert motion.duration() == pytest.approx(duration, abs=3 * motion.dt)
-
-
-def test_spectrum_against_pyrotd():
-    """In the frequency domain, where the motion is periodic and smooth between its points."""
-    with warnings.catch_warnings():
-        # Its import of pkg_resources is deprecated by setuptools.
-        warnings.simplefilter("ignore")
-        pyrotd = pytest.importorskip(
-            "pyrotd",
-            reason="pyrotd is not installed (the extra test has it), or not for this setuptools",
-            exc_type=ImportError,
-        )
-    pyrotd.processes = 1
-    periods = np.array([0.2, 0.5, 1.0, 2.0])
-    for motion in motions.synthetic(3, dt=0.005):
-        quiet = np.pad(motion.acceleration, (0, 6001 - len(motion.acceleration) % 2))
-        other = pyrotd.calc_spec_accels(motion.dt, quiet, 1 / periods, 0.05)
-        assert motion.spectrum(periods).pseudo_acceleration == pytest.approx(
-            other.spec_accel, rel=2e-3
-        )
 
 
 def test_scaled_has_what_was_asked_for():

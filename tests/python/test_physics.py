@@ -47,7 +47,7 @@ def test_finite_chain_against_hamiltons_equations(opens):
         opens=opens, kinematics="finite", axial_load=1e3, self_weight=True, top_mass=40.0,
         top_inertia=2.0, depth=0.3, damping=rbsdem.Damping(0.1, 1e-4),
     )  # fmt: skip
-    times = np.linspace(0.0, 0.3, 7)
+    times = np.linspace(0.0, 0.15, 4)
     loads = [1e4 * times, 30.0 * times - 3.0, 50.0 * times, 500.0 - 5e3 * times]
     q, v = start(opens=opens)
     reference = Chain(column, lambda t: (1e4 * t, 30.0 * t - 3.0, 50.0 * t, 500.0 - 5e3 * t))

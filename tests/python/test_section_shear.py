@@ -15,7 +15,7 @@ import pytest
 import rbsdem
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection
-from rbsdem.section import hinge, strength
+from rbsdem.section import strength
 from rbsdem.section.shear import closed_form_shear, fit_shear_spring, shear_diagram
 
 MPA = 1e6
@@ -316,19 +316,3 @@ def test_crack_spacing_without_ties_has_the_floor_of_the_theory():
         for size in (0.010, 0.020, 0.026, 0.040)
     ]
     assert found[0] < found[1] < found[2] == found[3]
-
-
-def test_confining_stress_of_a_spiral_by_hand():
-    """Mander et al. 1988: half of k_e rho_s f_yh; rho_s = pi d^2/(d_s s)."""
-    section = rbsdem.CircularSection(
-        0.4,
-        rbsdem.Concrete(30e6),
-        layout=rbsdem.Layout(8, 0.02, rbsdem.Steel(450e6)),
-        spiral=rbsdem.Spiral(0.010, 0.06, rbsdem.Steel(400e6)),
-        cover=0.03,
-    )
-    # Core of 0.33 m: rho_s = 0.015867, rho_cc = 0.029385, k_e = (1 - 0.05/0.66)/(1 - rho_cc).
-    strips = hinge.strips_of(section, 10)
-    assert strips.hoop_pressure == pytest.approx([0.015867 * 400e6] * 2, rel=1e-4)
-    stress = 0.5 * 0.952227 * 0.015867 * 400e6
-    assert strips.confining_stress == pytest.approx([stress] * 2, rel=1e-4)

@@ -56,48 +56,6 @@ def response(spring: Any, path: ArrayLike) -> Array:
 ROUND = {"k_c": 1.0, "d_c": 1.0, "k_y": 0.3, "d_y": 6.0, "k_u": 0.01}
 
 
-def test_takeda_rule_2_secant_of_that_line_goes_to_the_zero_crossing() -> None:
-    k_r = 0.5 * (6 / 24) ** 0.4
-    crack, zero = 24 - (2.68 + 1) / k_r, 24 - 2.68 / k_r
-    turn = -1 - (2.5 - 1) / (6 + crack) * (crack + 3)  # at -3
-    secant = turn / (-3 - zero)
-    force = response(Takeda(**ROUND, b1=0.01), [24.0, -3.0, 0.0, zero])
-    np.testing.assert_allclose(force[1:], [turn, turn + 3 * secant, 0], rtol=1e-12, atol=1e-12)
-
-
-def test_takeda_rule_2_extreme_line_goes_on_to_the_yielded_backbone() -> None:
-    """F_c = 1, F_y = 1.0025: K_r = max(K_0 1.05/3, 1.0025/3) meets P(-) at -2.8645, beyond D_y."""
-    spring = Takeda(k_c=1.0, d_c=1.0, k_y=0.05, d_y=1.05, k_u=0.0, b0=1.0)
-    k_r = max((1 + 1.0025) / (1 + 1.05) * 1.05 / 3, 1.0025 / 3)
-    meeting = 3 - 2 * 1.0025 / k_r
-    assert meeting < -1.05
-    path = [3.0, -1.05, -2.0, meeting + 1e-3, -2.9, meeting + 1e-3]
-    force = response(spring, path)
-    by_hand = [
-        1.0025, 1.0025 - 4.05 * k_r, 1.0025 - 5 * k_r, -1.0025 + 1e-3 * k_r, -1.0025,
-    ]  # fmt: skip
-    np.testing.assert_allclose(force[:5], by_hand, rtol=1e-12)
-    own = max((1 + 1.0025) / (1 + 1.05) * 1.05 / 2.9, 1.0025 / 2.9)
-    assert force[5] == pytest.approx(-1.0025 + own * (meeting + 1e-3 + 2.9), rel=1e-12)
-
-
-def test_takeda_rule_3_redirects_to_the_yield_point_and_stays() -> None:
-    """B0 = 1. Zero at 2.4 after 20: the yield point is steeper; at 0 after 60: it is not."""
-    spring = Takeda(**ROUND, b0=1.0)
-    zero = 20 - 2.64 / (0.5 * 6 / 20)
-    redirected = -2.5 / (6 + zero) * (zero + 3)
-    np.testing.assert_allclose(
-        response(spring, [3, -3, 20, -3, -6, -7]), [1.6, -1.6, 2.64, redirected, -2.5, -2.51]
-    )
-    np.testing.assert_allclose(response(spring, [3, -3, 60, -3, -4]), [1.6, -1.6, 3.04, -1.6, -1.9])
-    # The redirection outlives its excursion, even one that turned before the old peak: the one
-    # case in which a closed loop leaves a trace (property 08).
-    np.testing.assert_allclose(
-        response(spring, [3, -3, 20, 0, 20, 60, -4])[[4, 5, 6]],
-        [2.64, 3.04, -2.5 / 6 * 4],
-    )
-
-
 def test_takeda_zero_force_is_passed_only_beyond() -> None:
     """At exactly the zero crossing O(+) still leads back to its peak, and so does an ulp beyond."""
     spring = Takeda(**COLUMN_1)
@@ -137,18 +95,6 @@ def test_takeda_back_at_its_peak_but_for_round_off_unloads_from_it(inner: Any) -
     for turn in (3.0 - 1e-14, 3.0, 3.0 + 1e-14):
         force = spring.response([3.0, -3.0, turn, 2.0])
         assert force[-2:] == pytest.approx([1.6, 1.6 - outer], rel=1e-12)
-
-
-def test_takeda_section_2b_the_secant_wins_over_k_r() -> None:
-    """Side - was loaded for the first time before side + went on to 600, where K_r is 61.9/600.
-
-    Side - has no K_r of its own, so K_in is bounded by that of side +, which is below the secant.
-    """
-    spring = Takeda(**(ROUND | {"k_u": 0.1}))
-    assert 61.9 / 600 > 0.5 * (6 / 600) ** 0.4  # the floor of rule 1: zero force at zero
-    force = response(spring, [24, -3, 600, -3, -2.9])
-    slope = 2.5 / 6
-    np.testing.assert_allclose(force[2:], [61.9, -3 * slope, -2.9 * slope], rtol=1e-12)
 
 
 def random_parameters(rng: np.random.Generator, kind: str, extreme: bool) -> dict[str, Any]:
@@ -221,7 +167,7 @@ def random_cases(seed: int, kind: str, count: int, points: int, **how: bool) -> 
 @pytest.mark.parametrize("kind", INNER)
 @pytest.mark.parametrize(
     ("seed", "count", "points", "extreme"),
-    [(101, 600, 40, False), (102, 250, 60, True), (103, 20, 600, False)],
+    [(101, 300, 40, False), (102, 150, 60, True), (103, 10, 600, False)],
     ids=["ordinary", "extreme", "long"],
 )
 def test_reference_agrees(kind: str, seed: int, count: int, points: int, extreme: bool) -> None:
