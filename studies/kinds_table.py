@@ -1,4 +1,4 @@
-"""What bands hold of kinds of tests that were left out whole: a table of docs/peer.md.
+"""What bands hold of kinds of tests that were left out whole: a table of docs/prediction.md.
 
     python studies/kinds_table.py FOLDER [--samples 16] [--jobs 2] [--write]
 
@@ -13,7 +13,7 @@ ends of a property hold 80 % in the mean, every kind alike; a kind is judged wit
 others. Laboratories and decades are within the range, so nothing widens. The last column is the
 width that would hold 80 % of the points of that kind.
 
-`--write` puts the table into docs/peer.md and the numbers into data/layered_spread.json.
+`--write` puts the table into docs/prediction.md and the numbers into data/layered_spread.json.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What given tests of a laboratory gain for its others: the table of docs/peer.md.
+"""What given tests of a laboratory gain for its others: the table of docs/prediction.md.
 
     python studies/sisters_table.py FOLDER [--jobs 2]
 

@@ -1,4 +1,4 @@
-"""The scatter of left-out tests about the model, and what its bands hold: tables of docs/peer.md.
+"""The scatter of left-out tests about the model, and what its bands hold: tables of docs/prediction.md.
 
     python studies/spread_table.py FOLDER [--samples 16] [--jobs 2] [--once] [--write]
 
@@ -29,7 +29,7 @@ This takes nine times the predictions of all tests with their samples. `--once` 
 of the scatter of all groups, and parameters that the judged group was left out of for its own tests
 alone. The numbers that are shipped are the same, and what is judged hardly differs.
 
-`--write` puts scatter and coverage into docs/peer.md and the numbers into data/layered_spread.json.
+`--write` puts scatter and coverage into docs/prediction.md and the numbers into data/layered_spread.json.
 """
 
 from __future__ import annotations
@@ -347,7 +347,7 @@ def write(values: dict[str, Any], tables: dict[str, list[str]]) -> None:
     path = ROOT / "data/layered_spread.json"
     kept = json.loads(path.read_text("utf-8")) | values
     path.write_text(json.dumps(kept, indent=2) + "\n", "utf-8")
-    path = ROOT / "docs/peer.md"
+    path = ROOT / "docs/prediction.md"
     text = path.read_text("utf-8")
     for name, lines in tables.items():
         first, last = f"<!-- spread: {name} -->\n", "<!-- end of spread -->"

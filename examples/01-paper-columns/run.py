@@ -359,7 +359,7 @@ def main() -> None:
         "rms force\nerror",
         "Error over the measured peak. The model knows of a column what table 2 says. Its\n"
         "parameters, the same for all columns, are fitted to many tests, these four among\n"
-        "them; errors with their series left out of the fit are in docs/peer.md.",
+        "them; errors with their series left out of the fit are in docs/evidence.md.",
         drawn,
     )
     print_table(
