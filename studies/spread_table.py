@@ -29,7 +29,8 @@ This takes nine times the predictions of all tests with their samples. `--once` 
 of the scatter of all groups, and parameters that the judged group was left out of for its own tests
 alone. The numbers that are shipped are the same, and what is judged hardly differs.
 
-`--write` puts scatter and coverage into docs/prediction.md and the numbers into data/layered_spread.json.
+`--write` puts scatter and coverage into docs/prediction.md and the numbers into
+data/layered_spread.json.
 """
 
 from __future__ import annotations
