@@ -16,7 +16,7 @@ left out from the first step on: neither the slopes of their tests nor what deci
 Slopes of each test are taken at the priors and, from the third step on, at the places through which
 the fit to all tests went: they are nearly the same everywhere, and take most of the time. What has
 seen all tests is the form of the model and its fixed values, some of which are rounded results of
-earlier fits (docs/prediction.md). `--near` begins each search where that of the last version ended, the
+earlier fits. `--near` begins each search where that of the last version ended, the
 ones without a group where the same group was left out: for a small change of the model, with
 `--steps 0` for the scores alone.
 

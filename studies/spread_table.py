@@ -1,4 +1,4 @@
-"""The scatter of left-out tests about the model, and what its bands hold: tables of docs/prediction.md.
+"""The scatter of left-out tests about the model, what its bands hold: tables of docs/prediction.md.
 
     python studies/spread_table.py FOLDER [--samples 16] [--jobs 2] [--once] [--write]
 
