@@ -34,7 +34,7 @@ FORCES = {
 #: Italian, Turkish. A single letter is a name of its own only; the first that fits one column only
 #: names it.
 WORDS = {
-    "time": ("time", "t", "zeit", "tiempo", "temps", "tempo", "zaman"),
+    "time": ("time", "t", "zeit", "tiempo", "temps", "tempo", "zaman", "x_value"),
     "acceleration": (
         "acceleration", "acc", "ag", "a", "beschleunigung", "aceleracion", "accelerazione", "ivme",
     ),
@@ -52,11 +52,11 @@ WORDS = {
 #: Other words that are units, and not names, at the end of a name or below it.
 _OTHERS = (
     " s ms sec second seconds min - % rad mrad deg v mv nm ft lb klbf psi ksi pa mpa gpa bar"
-    " με µε ue um µm microstrain strain g gal gals hz °c kg knm"
+    " με ue um μm microstrain strain g gal gals hz °c kg knm"
 )
 _UNITS = {*_OTHERS.split(" "), *(unit.lower() for unit in (*LENGTHS, *FORCES))}
 #: Units of which others are made: kN m, mm/mm, m/s2.
-_PARTS = re.compile(r"[/*·.^\s]|-(?=[a-z])|(?<=[a-z])\d$")
+_PARTS = re.compile(r"[/*·.\s]|-(?=[a-z])|(?<=[a-z])(?:\^|\*\*)?[({]?-?\d[)}]?$")
 
 # In the order in which they are tried; a comma that separates has no comma before the decimals.
 _LAYOUTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (" ", "."), (" ", ","))
@@ -166,7 +166,7 @@ def plain(text: str) -> str:
     """Return a text in small letters without accents."""
     parts = unicodedata.normalize("NFKD", text.lower().replace("ı", "i"))
     text = "".join(letter for letter in parts if not unicodedata.combining(letter))
-    return text.replace("\u2212", "-")
+    return text.replace("\u2212", "-").replace("\u2044", "/")
 
 
 def bare(name: str) -> str:
@@ -219,7 +219,8 @@ def read_lines(source: str | os.PathLike[str]) -> tuple[str, list[str]]:
             text = raw.decode("latin-1")
     if not text.strip():
         raise InputError(f"{where}: is empty; download or export it again")
-    return where, text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    text = text.replace("\u2212", "-").replace("\r\n", "\n").replace("\r", "\n")
+    return where, text.split("\n")
 
 
 def read_table(
@@ -352,6 +353,8 @@ def _first_row(lines: list[str], begin: int, mark: str, point: str) -> int:
     remarks = lines[begin].rstrip(" ").endswith(mark)
     top, between = (begin, False), begin
     for i in range(begin - 1, -1, -1):
+        if lines[i].startswith("***End_of_Header***"):  # of LabVIEW
+            break
         words = _split(lines[i], mark)
         if not words or lines[i].lstrip().startswith("#") or _STATEMENT.match(lines[i]):
             continue
@@ -466,17 +469,21 @@ def _head(
 ) -> tuple[tuple[str, ...], tuple[str, ...], int]:
     """Return names and units from the lines above the numbers, and how many of these have them.
 
-    A column of remarks without one has a name, and no field that is a number.
+    A column of remarks without one has a name, and no field that is a number, or none at all.
     """
     empty = ("",) * columns
     statement = lines and _STATEMENT.match(lines[-1]) and len(re.findall("[:=]", lines[-1])) == 1
-    rows = [] if statement else [_names(line, mark, columns) for line in lines[-2:]]
-    if remarks:
+    rows = [] if statement else [_names(line, mark, columns) for line in lines[-3:]]
+    if remarks or any(plain(row[-1]) == "comment" for row in rows[-1:] if row):
         rows = [row[:columns] if len(row) == columns + 1 else row for row in rows]
     last = rows[-1] if rows else ()
     if len(last) != columns:
         return empty, empty, 0
-    above = rows[0] if len(rows) > 1 and len(rows[0]) == columns else empty
+    several = len(rows) == 3 and len(rows[0]) == len(rows[1]) == columns
+    if several and _are_units(rows[1], rows[0]) and not any(map(_is_unit, last)):
+        # Names of channels below the units
+        return rows[0], tuple(word.strip("[]() ") for word in rows[1]), 3
+    above = rows[-2] if len(rows) > 1 and len(rows[-2]) == columns else empty
     if all(map(_is_unit, last)) or (above is not empty and _are_units(last, above)):
         units = tuple(word.strip("[]() ") for word in last)
         return above, units, 1 if above is empty else 2
@@ -524,8 +531,9 @@ def _names(line: str, mark: str, columns: int) -> tuple[str, ...]:
 
 def _is_unit(word: str) -> bool:
     """Whether a word is a unit, or is in brackets as a unit is."""
-    plain = word.strip("[]() ").lower()
-    return word[:1] in ("[", "(") or all(part in _UNITS for part in _PARTS.split(plain))
+    unit = plain(word.strip("[]() "))
+    parts = _PARTS.split(unit)
+    return word[:1] in ("[", "(") or (unit != "." and all(part in _UNITS for part in parts))
 
 
 def _unit_in(name: str) -> str:

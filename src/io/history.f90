@@ -179,9 +179,9 @@ contains
       !> Whether a comment has a unit of acceleration or of a rate, or the word.
       logical function states_unit(comment)
          character(len=*), intent(in) :: comment
-         character(len=4), parameter :: marks(16) = &
+         character(len=4), parameter :: marks(20) = &
             [character(len=4) :: 'unit', 'unid', 'einh', 'hz', ' gal', '(gal', '/s', 's-2', '(g)', '[g]', &
-             'in g', '/(s', 'mps2', '_s2', '/с', 's⁻']
+             'in g', '/(s', 'mps2', '_s2', '/с', 's⁻', 'grav', 'cms', '⁄', '$^']
          integer :: i
 
          states_unit = any([(index(comment, trim(marks(i))) > 0, i=1, size(marks))])

@@ -133,6 +133,8 @@ FILES = [
     ("csv, a clock and a word", ".csv",
      rows([f"12:00:0{i} {a} ok" for i, a in enumerate(ONE)], "clock,acceleration_g,note\n"),
      {"dt": 0.02}, False),
+    ("csv, texts first", ".txt", rows([f"12:00:0{i} {a}" for i, a in enumerate(ONE)], "", " "),
+     {"dt": 0.02, "units": "g"}, False),
     ("csv, columns by name", ".csv", rows([f"{row} 7" for row in TWO], "time_s,ns_g,ew_g\n"),
      {"column": "NS"}, False),
     ("csv, columns by number", ".txt", rows([f"7 {row}" for row in ONE], "", " "),
@@ -290,6 +292,9 @@ def test_a_wrong_value_of_one_column_is_named(wrong):
             "ACC", "A")), {}, "it says that it holds a velocity"),
         ("0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8\n" * 9, {"units": "g", "dt": 0.01}, "are one record"),
         (rows(TWO, "time_s,acceleration_g\n").replace("0.3", "300"), {}, "is 300 g; no ground has"),
+        (rows([f"{20 * i} {a}" for i, a in enumerate(ONE)], "t,acc_g\n"), {}, "on by 20 s on av"),
+        (rows([f"{i} {a}" for i, a in enumerate(ONE)]), {"units": "g", "dt": 0.02}, "by 1 s on av"),
+        (rows(TWO, "Scale factor 9.81\n", " "), {"units": "g"}, "may state a factor of the values"),
         (rows(TWO, "Uncorrected accelerogram\nGNS\n"), {"units": "g"}, "COSMOS, CSMIP or GeoNet"),
     ],
 )  # fmt: skip
@@ -306,19 +311,34 @@ STATED = {
     "m/s2": ["# Unidad: m/s2", "# Beschleunigung in m/s²", "Accélération (m.s-2)",
              "# amplitude m s-2", "Values in metres per second squared", "# ivme birimi: m/sn2",
              "#ACC_UNIT=m/s**2", "acc_mps2", "acceleration (ms^-2)", "# Ускорение (м/с²)",
-             "acc/vel/disp: m/s2 / m/s / m", "acc/vel/disp: m/s2/m/s/m", "UNITS: SEC, M/SEC/SEC"],
+             "acc/vel/disp: m/s2 / m/s / m", "acc/vel/disp: m/s2/m/s/m", "UNITS: SEC, M/SEC/SEC",
+             "# m\u2044s²", "m/ss", "Ускорение в м/с2 (X)", "acc_ms2"],
     "cm/s2": ["#AmplitudeUnit: gal", "# Gal (cm/s/s)", "acceleration in gals", "Ivme (cm/sn2)",
               "# cm/(s^2)", "unit cm s^-2", "3 channels, in Gal", "units: gal/kine/cm",
               "UNITS=cm/s2/cm/s/cm", "Einheit: Gal", "Unité: cm/s²",
-              "cm·s⁻²", "Ускорение (см/с2)"],
-    "g": ["# Unidad: g", "fractions of gravity", "UNITS OF GRAVITY",
+              "cm·s⁻²", "Ускорение (см/с2)", "Ускорение (Гал)", "acc_cmss", "# acc cms2",
+             "# Acceleration, cm s$^{-2}$", "UNIDADES DE LOS DATOS : cm/s/s (Gal)",
+             "# 加速度 单位：cm/s²", "acceleration in gal, G. Santos"],
+    "g": ["# Unidad: g", "# fractions of gravity", "UNITS OF GRAVITY",
           "units: G", "UNITS: (g)", "Acc/Vel/Disp: g / cm/s / cm", "Einheit = g",
-          "Acc/Vel/Disp: g/cm/s/cm", "# acc in g's", "in units of g, filtered", "# amplitudes [g]"],
+          "Acc/Vel/Disp: g/cm/s/cm", "# acc in g's", "in units of g, filtered", "# amplitudes [g]",
+          "Aceleración en fracciones de g", "en unidades de 'g'", "Ускорение в долях g",
+          "acceleration normalised by gravity", "divided by g", "a/g (-)"],
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "line", ["% of g", "percent g", "uGal", "Acceleration [10^-2 m/s^2]", "10^-3 g"]
+    "line",
+    [
+        "% of g",
+        "percent g",
+        "uGal",
+        "Acceleration [10^-2 m/s^2]",
+        "10^-3 g",
+        "nm/s^2",
+        "dm/s/s",
+        "km/h/s",
+    ],
 )
 def test_a_part_of_a_unit_is_refused(line):
     with pytest.raises(InputError, match=r"the unit of .* is not one of"):
@@ -330,6 +350,9 @@ def test_a_part_of_a_unit_is_refused(line):
     ["fs=200", "SR=200", "Abtastrate 200", "Pas de temps 0.005", "sampling: 200", "1/200 s",
      "DELTA 0.005",
      "Tasa de muestreo 200", "Zeitschritt 0.005", "passo 0.005", "Interval: 0.005", "Δt = 0.005",
+     "Fs:200Hz", "Passo 0,005 s", "MUESTRAS POR SEGUNDO: 200", "TASA DE MUESTREO : 200 m/s",
+     "INTERVALO DE MUESTREO, C1-C6 (s) : /.005/.005/.005", "时间间隔：0.005s", "采样率200",
+     "h = 0.005", "Частота 200 Гц", "時間間隔 0.005 秒", "every 5000 microseconds", "200 S/s",
      "tstep 0.005", "digitized at 200", "bandpass 0.1-25 Hz, 200 sps"],
 )  # fmt: skip
 def test_a_number_that_may_be_another_step_is_asked_for(line):
@@ -439,6 +462,37 @@ def test_lines_of_values_without_a_head_are_one_record(width):
         motions.read_motion(text, "g", 0.01)
 
 
+LVM = """\
+LabVIEW Measurement\t
+Decimal_Separator\t.
+***End_of_Header***\t
+
+Channels\t1\t
+Samples\t7\t
+Y_Unit_Label\tg\t
+X_Dimension\tTime\t
+X0\t0.0000000000000000E+0\t
+Delta_X\t0.02\t
+***End_of_Header***\t\t
+X_Value\tTable\tComment
+"""
+
+
+def test_programs_of_laboratories_state_unit_and_step(file):
+    """One channel, whose statements have as many fields as its rows; rows without a remark."""
+    path = file(rows(TWO, LVM, "\t"), "t.lvm")
+    motion = motions.read_motion(path)
+    assert motion.acceleration == pytest.approx(G * np.array(VALUES), rel=1e-14)
+    assert motion.dt == 0.02
+    with pytest.raises(
+        InputError, match=r"times have a step of 0.02 s, and a line above says 0.01"
+    ):
+        motions.read_motion(rows(TWO, LVM.replace("0.02", "0.01"), "\t"))
+    mts = "Running Time\tTable\nSec\tm/sec^2\nCH001\tCH002\n"
+    motion = motions.read_motion(rows(in_unit(1 / G), mts, "\t"), column="Table")
+    assert motion.acceleration == pytest.approx(G * np.array(VALUES), rel=1e-14)
+
+
 def test_exponents_of_three_digits_have_no_letter(file):
     """Fortran leaves it out: 0.1-101 is 1e-102, and no pair of numbers."""
     text = NEW.replace("     7", "     3") + " .1000000-101 -.2000000E-02-.3000000+000\n"
@@ -486,7 +540,9 @@ def test_a_list_and_a_readme_beside_records_are_left_out_and_told(file, tmp_path
         "RSN-6 pSa (g)\n0.01,0.28\n0.02,0.29\n0.03,0.31\n",
         "_SearchResults.csv",
     )
-    said = "left out beside the records of a database: .*_SearchResults.csv.*_readME.txt"
+    file(NEW.replace("ACCEL", "VEL").replace("VELERATION", "VELOCITY") + ROWS, "RSN6.VEL.txt")
+    file("", "RSN6.V2")
+    said = "beside the records: .*holds a velocity.*_SearchResults.csv.*_readME.txt.*format .V2"
     with pytest.warns(RepairWarning, match=said):
         assert [motion.name for motion in motions.read_motions(tmp_path)] == ["RSN6_H1"]
 

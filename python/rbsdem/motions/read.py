@@ -31,13 +31,15 @@ UNITS = {
 }  # fmt: skip
 
 _NUM = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
-_SECOND = r"(?:s(?:ec(?:onds?)?|eg(?:undos?)?|ek(?:unden?)?|n)?|с(?:ек)?)"
+_SECOND = r"(?:s(?:ec(?:onds?)?|eg(?:undos?)?|ek(?:unden?)?|n)?|с(?:ек)?|秒)"
 #: A length over the square of a time, in small letters, as "cm/s/s", "cm/sec**2", "m s-2".
 _PER_SECOND_SQUARED = (
     r"((?:milli|centi)?met(?:er|re)s?|[mc]?m|[мс]?м|in(?:ch(?:es)?)?|f(?:oo|ee)?t)"
-    rf"\s*(?:[/.*·_]|per\b|p(?=s2)|(?<=m)(?=\s|s\s?\^?-2))\s*\(?{_SECOND}\)?\s*"
-    rf"(?:(?:/|per\b)\s*{_SECOND}|(?:\^|\*\*)?[({{]?\s*-?2|squared)[)}}]?(?![a-z0-9])"
+    rf"\s*(?:[/.*·_]|per\b|p(?=s2)|(?<=m)(?=\s|s(?:\s?\^?-2|\^?2|s)(?![a-z\d])))"
+    rf"\s*\(?{_SECOND}\)?\s*"
+    rf"(?:(?:/|per\b)\s*{_SECOND}|(?:\^|\*\*)?[({{]?\s*-?2|squared|(?<=s)s)[)}}]?(?![a-z0-9])"
 )
+_DECIMAL_COMMA = re.compile(r"(?<![\w.,])(\d+),(\d+)(?![\d.,])")
 _LENGTHS = {
     "mi": "mm",
     "ce": "cm",
@@ -50,6 +52,11 @@ _LENGTHS = {
 }
 
 
+def _statement(line: str) -> str:
+    """Return a line in small letters, its decimal commas as points, without marks of LaTeX."""
+    return _DECIMAL_COMMA.sub(r"\1.\2", plain(line).replace("$", ""))
+
+
 def unit_named(word: str) -> str:
     """Return the name of a unit by one of its spellings, or an empty text.
 
@@ -58,10 +65,10 @@ def unit_named(word: str) -> str:
     word : str
         As in a file: "G", "cm/s/s", "cm/sec**2", "gal", "m/s^2".
     """
-    text = plain(word).strip().strip("()[].,:;").strip()
+    text = _statement(word).strip().strip("()[].,:;'\"").strip()
     if text in ("g", "gs", "g's"):
         return "g"
-    if text in ("gal", "gals"):
+    if text in ("gal", "gals", "гал"):
         return "cm/s2"
     match = re.fullmatch(_PER_SECOND_SQUARED, text)
     return f"{_LENGTHS.get(match[1][:2], match[1][:2])}/s2" if match else ""
@@ -87,7 +94,7 @@ def agreed_unit(stated: str, wanted: str | None, who: str, line: str = "") -> st
     who : str
         Beginning of a message.
     line : str, optional
-        A line that has a unit, but not clearly that of the values.
+        The line that states the unit, or has one that is not clearly that of the values.
 
     Raises
     ------
@@ -98,7 +105,7 @@ def agreed_unit(stated: str, wanted: str | None, who: str, line: str = "") -> st
     if stated and unit and stated != unit:
         raise InputError(
             f"{who}the file says that its accelerations are in {stated}, and units = {wanted!r} "
-            "was given; leave units out, or correct the file"
+            f"was given; leave units out, or correct {repr(line) if line else 'the file'}"
         )
     if not (stated or unit):
         asked = f" (does {line!r} state it?)" if line else ""
@@ -124,9 +131,9 @@ _MARKS = str.maketrans("", "", "0123456789+-.eE \t")
 # beside a number is a value, as that of the peak. Steps and rates are known by their words; any
 # other number of seconds or Hz that may be one is asked for, where it is not what is used.
 _UNIT = re.compile(
-    rf"(?<![a-z]){_PER_SECOND_SQUARED}|(?<![a-z])gals?(?![a-z])"
-    rf"|(?:(?<=[(\[,:=/])\s*|\b(?:in|of|en|units?)\s+|_|(?<=\d)\s*)g(?:'?s|ravity)?"
-    r"(?=\s*(?:[)\],;.:=/*x]|$|\s\())"
+    rf"(?<![a-z]){_PER_SECOND_SQUARED}|(?<![a-z])(?:gals?(?![a-z])|гал\b)"
+    r"|(?:(?<=[(\[,:=/])\s*(?!g\.\s*[a-z])|\b(?:in|of|by|to|en|units?|(?:frac|frak|mult|unid|unit|дол)\w*"
+    r"(?:\s+d\w)?)\s+|_|(?<=\d)\s*)(?:g(?:'?s|ravity)?|['\"]g['\"])(?=\s*(?:[)\],;.:=/*x]|$|\s\())"
 )
 _NUMBER_BEFORE = re.compile(rf"(?<![\w.])({_NUM})\s*[x*×]?\s*$")
 _NUMBER_BEHIND = re.compile(rf"\s*[)\]:=x*×/]+[\s:=]*({_NUM})(?![\d.]*\s*[a-z])")
@@ -134,31 +141,39 @@ _NUMBER_BEHIND = re.compile(rf"\s*[)\]:=x*×/]+[\s:=]*({_NUM})(?![\d.]*\s*[a-z])
 _PART_OF_G = re.compile(
     r"(?<![\w])(?:(?:%|per\s?cent|percentage|porcentaje|prozent)\s*(?:(?:of|de|von)\s+)?|milli[ -]?"
     r"|micro[ -]?|[mnuµμ])g(?:als?)?(?![\w])|\b10\s*(?:\^|\*\*)\s*[({]?[-+]?\d+[)}]?\W{0,3}"
-    rf"(?:g|gals?|{_PER_SECOND_SQUARED})(?![\w])"
+    rf"(?:g|gals?|{_PER_SECOND_SQUARED})(?![\w])|(?<![a-z])(?:[dhknuµμ]|da)m\s*[/.]?\s*{_SECOND}\s*"
+    rf"(?:/\s*{_SECOND}|(?:\^|\*\*)?[({{]?-?2)|\bkm\s*/\s*h\s*/"
 )
+_FACTOR = re.compile(rf"(?:\bscale|\bscaling|factor|multipl\w* by)\b[^\d.+-]*({_NUM})(?![\d:/])")
 _UNIT_KEY = re.compile(
     r"(?:unit(?:s|e|es|a)?|unidad(?:es)?|einheit(?:en)?|birimi?)(?![a-z])"
     r"\s*(?:[:=(\[]|(?:of|is|are|in)\b)[\s:=(\[]*(.*)"
 )
 #: A unit of something else, as that of the times.
 _OTHER_UNIT = re.compile(rf"({_SECOND}|hz|deg\w*|°)\W*$")
-_RATES = {"hz": 1.0, "khz": 1e3, "sps": 1.0}
-_TIME_UNIT = rf"(?<![a-z])(k?hz|sps|ms(?:ec)?|us|milliseconds?|{_SECOND})(?![a-z0-9^'])"
+_RATES = {"hz": 1.0, "khz": 1e3, "sps": 1.0, "s/s": 1.0, "гц": 1.0}
+_TIME_UNIT = (
+    r"(?<![a-z])(k?hz|гц|sps|(?<!/)s/s|ms(?:ec)?|us"
+    rf"|(?:milli|micro)?{_SECOND})(?![a-z0-9^'])"
+)
 _STEP = re.compile(
-    r"(?:\b(?:dt|delta[ _]*t)\b|\btime[ _]*(?:step|interval|increment)"
+    r"(?:\b(?:dt|delta[ _]*[tx])\b|\btime[ _]*(?:step|interval|increment)"
     r"|\bsampl\w*?[ _]*(?:interval|period|step)"
     r"|(?P<rate>\bsampl\w*?[ _]*(?:rate|freq\w*)|\bsamples\s*(?:/|per)\s*s\w*))"
     rf"(?P<between>[^\d.+-]*?)(?P<number>{_NUM})\s*(?P<behind>[a-z]*)"
 )
+#: Before a number: no part of a word, a date or a clock.
+_ALONE = r"(?<![a-z_\d.-])(?<!\d[:/])"
 _TIMED = re.compile(
-    rf"(?<![\w.:/-])({_NUM})\s*{_TIME_UNIT}|{_TIME_UNIT}\W{{0,3}}?[:=]\s*({_NUM})"
-    rf"|(?<![\w.:/-])({_NUM})\s*(?![ckm]?m/|in/|ft/)(?:[a-z]+|1)\s*(?:/|p(?:er|or)\s)\s*{_SECOND}(?![a-z/])"
+    rf"{_ALONE}({_NUM})\s*{_TIME_UNIT}|{_TIME_UNIT}\W{{0,3}}?[:=][\s/]*({_NUM})"
+    rf"|{_ALONE}({_NUM})\s*(?![ckm]?m/|in/|ft/)(?:[a-z]+|1)\s*(?:/|p(?:er|or)\s)\s*{_SECOND}(?![a-z/])"
 )
 #: A number without a unit behind what may be a word for a step or a rate.
 _HINTED = re.compile(
     r"(?:(?:sampl|muestr|abtast|chantill|campion|amostr|orne|step|schritt|interv|aralig|passo?\b|paso"
-    r"|pas de temps|delta\b|δt|\bfs\b|\bsr\b|\bfreq|rate\b|digiti[sz])[^\d.+-]{0,24}?"
-    rf"|(?<![\w.])1\s*/)\s*({_NUM})(?![\d.]|\s*(?!s(?:ec)?\b)[-a-z/%])"
+    r"|采样|周波数|间隔|間隔|步长|шаг|частот|pas de temps|delta\b|δt|\bfs\b|\b[ht]\b(?=\s*=)"
+    r"|\bsr\b|\bfreq|rate\b|digiti[sz])[^\d.+-]{0,24}?"
+    rf"|(?<![\w.])1\s*/)\s*({_NUM})(?![\d.]|\s*(?!s(?:ec)?\b|m/s)[-a-z/%])"
 )
 #: Numbers of other things: how many values there are.
 _NUMBER_OF = re.compile(
@@ -167,6 +182,8 @@ _NUMBER_OF = re.compile(
 _FILTER = re.compile(r"filt|pass(?!o)|cut|corner|corte|pasa|\b[hl]p\b|natural|instrument|nyquist")
 #: A step is at most this long, a rate at least its inverse [s].
 _LONGEST_STEP, _LEAST_RATE = 0.1, 10.0
+#: Times that go on by more are no seconds of a record [s].
+_LONGEST_TIMES = 0.5
 #: Steps that differ by this part are two; times this part of a step off are round-off of printing.
 _UNEVEN = 0.02
 
@@ -187,7 +204,7 @@ _KEY_AND_VALUE = re.compile(r"\s*[A-Za-z][^:=]*[:=]")
 _MOST_HEAD = 100
 
 
-def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, str]]]:
+def stated_unit(head: Sequence[str], path: str) -> tuple[str, str, list[tuple[float, str]]]:
     """Return the unit of the accelerations that lines above them state, and values with a unit.
 
     Parameters
@@ -199,8 +216,8 @@ def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, 
 
     Returns
     -------
-    unit : str
-        Empty if no line states one.
+    unit, line : str
+        The unit, and the line that states it, or has a value with one; empty if there is none.
     values : list of (float, str)
         Values with a unit, as that of the peak [m/s2], and their lines.
 
@@ -212,10 +229,10 @@ def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, 
     said: dict[str, str] = {}
     values: list[tuple[float, str]] = []
     for line in head:
-        text, short = plain(line).strip(), line.strip()[:80]
+        text, short = _statement(line).strip(), line.strip()[:80]
         known = False
         for match in _UNIT.finditer(text):
-            word = re.sub(r"^(?:_|in\s|of\s|en\s|units?\s)?\s*", "", match[0])
+            word = match[0] if match[1] else re.sub(r"^.*[\s_]", "", match[0])
             unit, known = unit_named(word.replace("gravity", "g")), True
             beside = _NUMBER_BEFORE.search(text[: match.end() - len(word)])
             beside = beside or _NUMBER_BEHIND.match(text[match.end() :])
@@ -232,14 +249,24 @@ def stated_unit(head: Sequence[str], path: str) -> tuple[str, list[tuple[float, 
     if len(said) > 1:
         told = " and ".join(f"{unit} ({line[:60]!r})" for unit, line in said.items())
         raise InputError(f"{path}: states the units {told}; keep the one that is meant")
-    return next(iter(said), ""), values
+    unit, line = next(iter(said.items()), ("", values[0][1] if values else ""))
+    return unit, line, values
 
 
-def _check_peak(values: Sequence[tuple[float, str]], motion: GroundMotion, path: str) -> None:
-    """Refuse the unit of the user where the file states a peak, with its unit, that is far off.
+def _check_peak(
+    values: Sequence[tuple[float, str]], motion: GroundMotion, head: Sequence[str], path: str
+) -> None:
+    """Refuse the unit of the user where the file states a factor, or a peak that is far off.
 
     Peaks of other components and of the uncorrected record are within a factor of five.
     """
+    for line in head:
+        factor = _FACTOR.search(_statement(line))
+        if factor and _float(factor[1]) not in (0, 1):
+            raise InputError(
+                f"{path}: {line.strip()[:80]!r} may state a factor of the values; apply it, and "
+                "say checks=False"
+            )
     if values and not any(0.2 * motion.pga <= value <= 5 * motion.pga for value, _ in values):
         value, line = values[0]
         raise InputError(
@@ -251,7 +278,7 @@ def _check_peak(values: Sequence[tuple[float, str]], motion: GroundMotion, path:
 def stated_step(head: Sequence[str]) -> float | None:
     """Return the step [s] that lines above the values state, as a step or as a rate, or None."""
     for line in head:
-        before, match = _BEFORE.match(line), _STEP.search(plain(line))
+        before, match = _BEFORE.match(line), _STEP.search(_statement(line))
         if before:
             return _float(before[1 if before[3].upper() == "DT" else 2])
         if match and ((number := _float(match["number"])) > 0 or not match["rate"]):
@@ -268,20 +295,22 @@ def _seconds(number: float, unit: str) -> float:
     """Return a number of seconds, or the time between two of a rate."""
     if unit in _RATES:
         return 1 / (_RATES[unit] * number)
-    return number * (1e-3 if unit[0] == "m" else 1e-6 if unit == "us" else 1.0)
+    micro = unit.startswith(("us", "micro"))
+    return number * (1e-6 if micro else 1e-3 if unit[0] == "m" else 1.0)
 
 
 def _check_step(head: Sequence[str], step: float, path: str) -> None:
     """Refuse a step if a line has a time or a rate that may be the step, and none has this one."""
     asked: dict[str, float] = {}
     for line in head:
-        for text in plain(line).split(";"):
+        for text in _statement(line).split(";"):
             if _FILTER.search(text) and "sps" not in text:
                 break
             found = [
-                _seconds(number, match[2] or match[3] or "hz")
+                time
                 for match in _TIMED.finditer(text)
                 if (number := _float(match[1] or match[4] or match[5])) > 0
+                and (time := _seconds(number, match[2] or match[3] or "hz")) <= _LONGEST_STEP
             ]
             for match in () if found or _NUMBER_OF.search(text) else _HINTED.finditer(text):
                 number = _float(match[1])
@@ -384,8 +413,8 @@ def read_record(
     if checks and stated is None:
         _check_step(head, step, path)
     _refuse_other(head, path)
-    stated_in, peaks = stated_unit(head, path)
-    unit = agreed_unit(stated_in, units, f"{path}: ", peaks[0][1] if peaks else "")
+    stated_in, line, peaks = stated_unit(head, path)
+    unit = agreed_unit(stated_in, units, f"{path}: ", line)
     values = _values(lines, first, path)
     lacking = count - len(values)
     if lacking > MOST_MISSING:
@@ -406,8 +435,8 @@ def read_record(
         )
     second = lines[1].strip() if first > 1 and not _COUNT.search(lines[1]) else ""
     motion = GroundMotion(np.array(values) * UNITS[unit], step, name, _about(head) or second)
-    if checks and not stated_in:
-        _check_peak(peaks, motion, path)
+    if checks:
+        _check_peak([] if stated_in else peaks, motion, head, path)
     return motion
 
 
@@ -508,6 +537,10 @@ def _about(head: Sequence[str]) -> str:
     return ", ".join(dict.fromkeys(match[2].strip() for match in matches))
 
 
+class _OtherQuantityError(InputError):
+    """A file holds a velocity or a displacement."""
+
+
 def _refuse_other(head: Sequence[str], path: str) -> None:
     """Refuse the velocities and displacements that come with an acceleration (VT2, DT2)."""
     text = " ".join(head).upper()
@@ -515,7 +548,7 @@ def _refuse_other(head: Sequence[str], path: str) -> None:
         return
     for word in ("VELOCITY", "DISPLACEMENT"):
         if word in text:
-            raise InputError(
+            raise _OtherQuantityError(
                 f"{path}: it says that it holds a {word.lower()}; read the file of the "
                 "acceleration (.AT2)"
             )
@@ -657,14 +690,14 @@ def read_columns(
             f"{path}: the unit {named!r} of column {table.names[value_at]} is not one of "
             f"{', '.join(UNITS)}"
         )
-    above, peaks = ("cm/s2", []) if _AFAD in lines[0] else stated_unit(head, path)
+    above, line, peaks = ("cm/s2", "", []) if _AFAD in lines[0] else stated_unit(head, path)
     if unit and above and unit != above:
         raise InputError(
             f"{path}: column {table.names[value_at]} is in {unit}, and a line above says {above}; "
             "correct the file"
         )
     stated_in = unit or above
-    unit = agreed_unit(stated_in, units, f"{path}: ", peaks[0][1] if peaks else "")
+    unit = agreed_unit(stated_in, units, f"{path}: ", "" if unit else line)
     values = table.values[:, value_at] * UNITS[unit]
     comment = next((line.lstrip("# ").strip() for line in lines if line.startswith("#")), "")
     about = _about(head) or comment
@@ -680,7 +713,18 @@ def read_columns(
     else:
         if len(values) < 2:
             raise InputError(f"{path}: has {len(values)} rows; a motion has two or more")
-        values, step = _even(table.values[:, time_at], values, dt, path)
+        times = table.values[:, time_at]
+        if (
+            checks
+            and not table.units[time_at]
+            and np.ptp(times) > _LONGEST_TIMES * (len(times) - 1)
+        ):
+            raise InputError(
+                f"{path}: the times of column {table.names[time_at] or time_at + 1} go on by "
+                f"{np.ptp(times) / (len(times) - 1):.4g} s on average; if they are milliseconds or "
+                "numbers of rows, convert them, or give column= and dt=; else say checks=False"
+            )
+        values, step = _even(times, values, dt, path)
         if stated is not None and dt is None and abs(stated - step) > _UNEVEN * stated:
             raise InputError(
                 f"{path}: the times have a step of {step:g} s, and a line above says {stated:g} s; "
@@ -689,8 +733,8 @@ def read_columns(
     motion = GroundMotion(values, step, name, about)
     if checks and stated is None and (time_at is None or dt is None):
         _check_step(head, step, path)
-    if checks and not stated_in:
-        _check_peak(peaks, motion, path)
+    if checks:
+        _check_peak([] if stated_in else peaks, motion, head, path)
     return motion
 
 
@@ -709,9 +753,10 @@ def _check_count(lines: Sequence[str], rest: int, path: str) -> None:
 def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, int]:
     """Return the place of the times, None if there are none, and that of the accelerations."""
     path = table.source
-    if table.columns == 1 and column is None:
-        return None, 0
+    numbers = [i for i in range(table.columns) if i not in table.texts]
     time, acceleration = table.find("time"), table.find("acceleration")
+    if len(numbers) == 1 and column is None and (table.columns == 1 or time is None):
+        return None, numbers[0]
     # ACCELERATION TIME SERIES is no time.
     time = None if time == acceleration else time
     if column is not None:
@@ -719,17 +764,17 @@ def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, 
         if time is None and not any(table.names) and value > 0 and _ascends(table.values[:, 0]):
             time = 0
     elif not any(table.names):
-        if table.columns > 2:
+        if len(numbers) > 2:
             raise InputError(
-                f"{path}: has {table.columns} columns without names. If they are columns, say "
+                f"{path}: has {len(numbers)} columns without names. If they are columns, say "
                 "column=, the number of the accelerations from 1; if they are one record, line by "
                 "line, state the number of its values and their step above them, as "
                 "NPTS= 4000, DT= .0050 SEC"
             )
-        return 0, 1
+        return numbers[0], numbers[1]
     else:
-        if acceleration is None and table.columns == 2 and time is not None:
-            acceleration = 1 - time
+        if acceleration is None and len(numbers) == 2 and time is not None:
+            acceleration = numbers[1 - numbers.index(time)]
         if acceleration is None:
             raise InputError(
                 f"{path}: no column is named after the acceleration, or more than one "
@@ -784,15 +829,9 @@ def _rounded(step: float) -> float:
 
 #: Endings of the files that `read_motions` takes from a folder.
 ENDINGS = (
-    ".at2",
-    ".csv",
-    ".txt",
-    ".asc",
-    ".ns",
-    ".ew",
-    ".ud",
+    ".at2", ".csv", ".txt", ".asc", ".lvm", ".ns", ".ew", ".ud",
     *(f".{direction}{place}" for direction in ("ns", "ew", "ud") for place in (1, 2)),
-)
+)  # fmt: skip
 #: Of these, files of many kinds.
 _TABLES = (".csv", ".txt")
 #: Formats with much in them besides the accelerations, which other programs read well.
@@ -895,9 +934,9 @@ def read_motions(
     Parameters
     ----------
     folder : path-like
-        Folder with files that end with .AT2, .csv, .txt, .asc, or as those of K-NET; other files
-        are left out. So are, beside the records of a database, .csv and .txt that cannot be read,
-        as its list and its readme.
+        Folder with files that end with .AT2, .csv, .txt, .asc, .lvm, or as those of K-NET; other
+        files are left out. So are velocities and displacements and, beside the records of a
+        database, .csv and .txt that cannot be read, as its list and its readme.
     units : str, optional
         As for `read_motion`, for files that do not name their unit.
     pattern : str, optional
@@ -914,17 +953,16 @@ def read_motions(
     Warns
     -----
     RepairWarning
-        As `read_motion`, and if a .csv or .txt beside the records of a database is left out.
+        As `read_motion`, and if a file is left out that may be a record.
     """
     place = _arguments.path(folder, "folder")
     _arguments.text(pattern, "pattern")
     if not place.is_dir():
         raise InputError(f"{place} is not a folder; for one record call read_motion")
-    paths = sorted(
-        path
-        for path in place.glob(pattern)
-        if path.suffix.lower() in ENDINGS and path.is_file() and not path.name.startswith(".")
+    files = sorted(
+        path for path in place.glob(pattern) if path.is_file() and not path.name.startswith(".")
     )
+    paths = [path for path in files if path.suffix.lower() in ENDINGS]
     if not paths:
         raise InputError(
             f"{place}: no file {pattern!r} with the ending {', '.join(ENDINGS)} is there"
@@ -937,10 +975,16 @@ def read_motions(
         # Beside the records of a database there are a list of them and a readme.
         beside = path in tables and len(tables) < len(paths)
         with _arguments.collected(others if beside else faults):
-            motions.append(read_motion(path, units, column=column, checks=checks))
-    if faults:
+            try:
+                motions.append(read_motion(path, units, column=column, checks=checks))
+            except _OtherQuantityError as error:
+                others.append(str(error))
+    for path in files:
+        if path.suffix.lower() in _OTHERS:
+            others.append(f"{path}: the format {path.suffix} is not read here")
+    if faults or not motions:
         raise InputError("\n".join(faults + others))
     if others:
         told = "; ".join(others)
-        warn(f"{place}: left out beside the records of a database: {told}", RepairWarning)
+        warn(f"{place}: left out beside the records: {told}", RepairWarning)
     return tuple(motions)
