@@ -310,7 +310,10 @@ contains
       case (listing)
          if (allocated(x)) call list_numbers(self, key%name, x)
       case (checking)
-         if (.not. allocated(x)) return
+         if (.not. allocated(x)) then
+            if (.not. key%optional) call missing(self, key)
+            return
+         end if
          one = key
          one%optional = .false.
          do i = 1, size(x)
@@ -349,13 +352,15 @@ contains
    end subroutine text_key
 
    !> A text of any length; not allocated: not given.
-   subroutine long_text_key(self, name, text, meaning)
+   subroutine long_text_key(self, name, text, meaning, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
       character(len=:), allocatable, intent(inout) :: text
       character(len=*), intent(in) :: meaning
+      logical, intent(in), optional :: required
 
-      call one_text(self, key_type(name=name, kind=text_kind, optional=.true., meaning=meaning), text)
+      call one_text(self, key_type(name=name, kind=text_kind, optional=.not. is_true(required), &
+                                   meaning=meaning), text)
    end subroutine long_text_key
 
    subroutine one_text(self, key, text)
@@ -371,6 +376,10 @@ contains
       case (putting)
          if (key%name == self%wanted) text = trim(self%text)
       case (checking)
+         if (.not. key%optional) then
+            if (.not. allocated(text)) text = ''
+            if (text == '') call missing(self, key)
+         end if
          ! Other texts may not be allocated.
          if (key%kind /= word_kind) return
          if (text == '' .or. choice_number(key, text) > 0) return
@@ -386,6 +395,18 @@ contains
       case default                                  ! no other mode
       end select
    end subroutine one_text
+
+   !> A value that must be given is not.
+   subroutine missing(self, key)
+      type(key_visitor), intent(inout) :: self
+      type(key_type), intent(in) :: key
+      character(len=:), allocatable :: remedy
+
+      remedy = 'give it'
+      if (key%kind == word_kind) remedy = 'it is one of '//choice_list(key)
+      self%sound = .false.
+      call self%messages%add(self%group//': '//trim(key%name)//' is missing; '//trim(remedy))
+   end subroutine missing
 
    pure logical function is_true(choice)
       logical, intent(in), optional :: choice

@@ -166,7 +166,7 @@ contains
       type(key_visitor), intent(inout) :: v
 
       call v%long_text('path', self%path, 'file or folder of records, from the folder of the case: they '// &
-                       'are scaled to the spectrum and run beside the target')
+                       'are scaled to the spectrum and run beside the target', required=.true.)
       call v%word('units', self%units, 'unit of records that name none: g, m/s2, cm/s2')
    end subroutine visit_records
 
@@ -205,7 +205,6 @@ contains
       if (allocated(self%target)) call self%target%check('target', messages)
       if (allocated(self%records)) then
          call self%records%check('records', messages)
-         if (.not. allocated(self%records%path)) call messages%add('records: path is missing; give it')
          if (.not. allocated(self%target)) then
             call messages%add('records: they are scaled to the spectrum of a &target; give that too')
          end if

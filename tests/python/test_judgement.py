@@ -125,7 +125,7 @@ def test_the_executable_alone_says_what_to_type(house, run_cli):
         ("soil = 'C'", "soil = 'Q'", "soil"),
         ("level = 'SD'", "level = 'LS'", "level = 'LS' is none of en_1998_3"),
         ("method = 'en_1998'", "method = 'n2'", "'n2' is not known"),
-        ("&assess code = 'asce_41', knowledge = 0.75", "&records units = 'g'", "path is missing"),
+        ("&assess code = 'asce_41', knowledge = 0.75", "&records path = 'a.csv'", "is not there"),
         (
             "&assess code = 'asce_41', knowledge = 0.75",
             "&limit member = 'N-*', rotations = 0.1, 0.2, 0.3",
@@ -141,6 +141,27 @@ def test_what_is_wrong_is_told_by_check_and_by_run(house, old, new, words, *, co
         assert done.returncode == 2
         assert words in done.stderr
     assert not (house.parent / "house.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("method = 'en_1998', ", "", "target: method is missing; it is one of asce_41, en_1998"),
+        ("spectrum = 'en_1998', ", "", "target: spectrum is missing; it is one of en_1998"),
+        ("code = 'asce_41', ", "", "assess: code is missing; it is one of asce_41"),
+        (
+            "&assess code = 'asce_41', knowledge = 0.75",
+            "&limit member = 'C'",
+            "rotations is missing",
+        ),
+        ("&assess code = 'asce_41', knowledge = 0.75", "&records units = 'g'", "path is missing"),
+    ],
+)
+def test_a_key_that_must_be_given_is_asked_for(house, old, new, words):
+    assert old in HOUSE
+    house.write_text(HOUSE.replace(old, new, 1))
+    with pytest.raises(rbsdem.InputError, match=words):
+        rbsdem.read_case(house)
 
 
 def test_a_building_is_judged_by_its_case(tmp_path, monkeypatch, command):

@@ -534,6 +534,8 @@ CASES = [
     ("&beam_of kind = 'a' /", "beam_of: along is missing"),
     ("&column_of line = 1, kind = 'a' /", "line is of a planar frame"),
     ("&column_of kind = 'b' /", "kind = 'b' is not known"),
+    ("&column_of line_x = 1 /", "column_of: kind is missing"),
+    ("&floor floor = 2, floor_load = 5e3 /", "floor = 2, but there are 1; correct it"),
 ]
 
 

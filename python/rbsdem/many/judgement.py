@@ -86,6 +86,8 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
         faults.append(
             "target: it is that of a push-over; give drive = 'displacement' without times"
         )
+    if case.records and not Path(case.records["path"]).exists():
+        faults.append(f"records: path = {case.records['path']} is not there; correct it")
     spectrum = None
     with collected(faults):
         spectrum = _spectrum(case.target) if case.target else None

@@ -560,8 +560,12 @@ def _cell(given: Mapping[str, Any], kinds: Mapping[str, Any]) -> Any:
 def _by_floor(name: str, storeys: int, groups: Groups) -> list[Any]:
     values: list[Any] = [0.0] * storeys
     for given in groups.get("floor", []):
+        if not 0 <= (floor := int(given.get("floor", 0))) <= storeys:
+            raise InputError(
+                f"floor: floor = {floor}, but there are {storeys}; correct it, or give 0 for all"
+            )
         for i in range(storeys):
-            if given.get("floor", 0) in (0, i + 1):
+            if floor in (0, i + 1):
                 several = tuple(_core.several(given.get(name, 0.0)))
                 values[i] = several if len(several) > 1 else several[0]
     return values[:1] if len(set(values)) == 1 else values
