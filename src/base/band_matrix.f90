@@ -11,8 +11,8 @@
 !> A matrix with small pivots, or with negative ones where nothing is scaled, is solved by LAPACK's
 !> elimination with pivots. The others are factored here: for a half-width up to 3 the columns that an
 !> elimination changes stay in registers. LAPACK's band routines take several times as long, because they call
-!> other routines for vectors of three numbers. Of a wide matrix the columns before the first one that has
-!> changed keep their factor.
+!> other routines for vectors of three numbers. Of a wide matrix rows are factored from their first element
+!> on, and those before the first one that has changed keep their factor.
 module rbs_base_band_matrix
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
@@ -44,12 +44,13 @@ module rbs_base_band_matrix
       !> After `factor`: whether the matrix is positive definite, and its number of negative pivots
       logical :: positive = .false.
       integer :: negative = 0
-      !> Its factor: 1/D and L
+      !> Its factor: 1/D and L, of a wide matrix by rows: triangle(2 + width - i + j, i) = l(i, j)
       real(wp), allocatable :: triangle(:, :)
       !> Whether this serves for solutions
       logical, private :: serves = .false.
-      !> The band of a wide factor, as it was factored last, and D (size)
-      real(wp), allocatable, private :: factored(:, :), diagonal(:)
+      !> The band of a wide factor, as it was factored last, and 1/D; where its rows begin (size)
+      real(wp), allocatable, private :: factored(:, :), inverse(:)
+      integer, allocatable, private :: first(:)
       !> Powers of two next to one over root of the stiffness, so that no digit depends on units, and zeros
       !> (size + half-width); the stiffness scaled by them (size); the matrix as elimination with pivots
       !> takes it
@@ -87,8 +88,10 @@ contains
       self%width = width
       rows = max(width, narrow) + 1
       allocate (self%band(rows, unknowns), self%triangle(rows, unknowns), source=0.0_wp)
-      if (width > narrow) allocate (self%factored(rows, unknowns), self%diagonal(unknowns), &
-                                    source=huge(1.0_wp))
+      if (width > narrow) then
+         allocate (self%factored(rows, unknowns), self%inverse(unknowns), source=huge(1.0_wp))
+         self%first = [(i, i=1, unknowns)]
+      end if
       if (.not. present(stiffness)) return
       self%stiffness = stiffness
       self%scale = [scale(1.0_wp, -shifta(exponent(stiffness), 1)), (0.0_wp, i=2, rows)]
@@ -118,8 +121,8 @@ contains
       if (self%width <= narrow) then
          call factor_narrow(self%size, self%band, self%triangle, self%negative)
       else
-         call factor_wide(self%size, self%width, self%band, self%factored, self%triangle, self%diagonal, &
-                          self%negative)
+         call factor_wide(self%size, self%width, self%band, self%factored, self%first, self%triangle, &
+                          self%inverse, self%negative)
       end if
       self%has_pivots = .false.
       self%positive = self%negative == 0
@@ -184,39 +187,80 @@ contains
       end do
    end subroutine factor_narrow
 
-   !> The same for any half-width. Columns before the first one that has changed stay.
-   pure subroutine factor_wide(n, width, band, factored, triangle, diagonal, negative)
+   !> The same for any half-width, row by row and within the profile: a row of L begins where that of the
+   !> matrix does. Rows before the first one that has changed stay.
+   pure subroutine factor_wide(n, width, band, factored, first, triangle, inverse, negative)
       integer, intent(in) :: n, width
       real(wp), intent(in) :: band(width + 1, n)
-      !> Band that was factored before, replaced by this one, and its factor: 1/D and L; D
-      real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), diagonal(n)
+      !> Band that was factored before, replaced by this one; the first column of each row, of all bands so
+      !> far; the factor: 1/D and L, row by row, and 1/D alone
+      real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), inverse(n)
+      integer, intent(inout) :: first(n)
       integer, intent(out) :: negative
-      real(wp) :: column(width + 1), share, next
-      integer :: first, last, i, j, k
+      real(wp) :: row(n), pivot
+      integer :: changed, i, j, k
 
-      do first = 1, n
-         if (.not. all(abs(band(:, first) - factored(:, first)) <= 0.0_wp)) exit
-      end do
-      negative = count(.not. diagonal(:first - 1) > 0.0_wp)
-      do j = first, n
+      changed = n + 1
+      do j = n, 1, -1
+         if (all(abs(band(:, j) - factored(:, j)) <= 0.0_wp)) cycle
+         changed = j
          factored(:, j) = band(:, j)
-         column = band(:, j)
-         ! Two columns at once, as the sum is loaded and stored half as often so.
-         do k = max(1, j - width), j - 2, 2
-            i = j - k
-            last = 1 + width - i
-            share = triangle(1 + i, k)*diagonal(k)
-            next = triangle(i, k + 1)*diagonal(k + 1)
-            column(:last) = (column(:last) - share*triangle(1 + i:, k)) - next*triangle(i:width, k + 1)
-            column(last + 1) = column(last + 1) - next*triangle(1 + width, k + 1)
+         do i = j, min(j + width, n)
+            if (abs(band(1 + i - j, j)) > 0.0_wp) first(i) = min(first(i), j)
          end do
-         if (k == j - 1) column(:width) = column(:width) - (triangle(2, k)*diagonal(k))*triangle(2:, k)
-         if (.not. column(1) > tiny(1.0_wp)) call count_negative(column(1), negative)
-         diagonal(j) = column(1)
-         triangle(1, j) = 1.0_wp/diagonal(j)
-         triangle(2:, j) = column(2:)*triangle(1, j)
+      end do
+      negative = count(.not. inverse(:changed - 1) > 0.0_wp)
+      do i = changed, n
+         do k = first(i), i - 1
+            row(k) = band(1 + i - k, k)
+         end do
+         ! Four columns at once, as the row is loaded less often so.
+         do j = first(i), i - 4, 4
+            k = max(first(i), minval(first(j:j + 3)))
+            call reduce_four(j - k, row(k:j + 3), triangle(2 + width - j + k:, j), &
+                             triangle(1 + width - j + k:, j + 1), triangle(width - j + k:, j + 2), &
+                             triangle(width - j + k - 1:, j + 3))
+         end do
+         do j = j, i - 1
+            k = max(first(i), first(j))
+            row(j) = row(j) - inner_product(j - k, row(k:), triangle(2 + width - j + k:, j))
+         end do
+         pivot = band(1, i)
+         do k = first(i), i - 1
+            triangle(2 + width - i + k, i) = row(k)*inverse(k)
+            pivot = pivot - row(k)*triangle(2 + width - i + k, i)
+         end do
+         if (.not. pivot > tiny(1.0_wp)) call count_negative(pivot, negative)
+         inverse(i) = 1.0_wp/pivot
+         triangle(1, i) = inverse(i)
       end do
    end subroutine factor_wide
+
+   !> Take from four elements of a row what the columns before them say.
+   pure subroutine reduce_four(m, row, a, b, c, d)
+      integer, intent(in) :: m
+      real(wp), intent(inout) :: row(m + 4)
+      !> Rows of L of the four
+      real(wp), intent(in) :: a(m), b(m + 1), c(m + 2), d(m + 3)
+      real(wp) :: p, q, r, s
+      integer :: k
+
+      p = 0.0_wp
+      q = 0.0_wp
+      r = 0.0_wp
+      s = 0.0_wp
+      !$omp simd reduction(+:p, q, r, s)
+      do k = 1, m
+         p = p + row(k)*a(k)
+         q = q + row(k)*b(k)
+         r = r + row(k)*c(k)
+         s = s + row(k)*d(k)
+      end do
+      row(m + 1) = row(m + 1) - p
+      row(m + 2) = row(m + 2) - (q + row(m + 1)*b(m + 1))
+      row(m + 3) = row(m + 3) - (r + row(m + 1)*c(m + 1) + row(m + 2)*c(m + 2))
+      row(m + 4) = row(m + 4) - (s + row(m + 1)*d(m + 1) + row(m + 2)*d(m + 2) + row(m + 3)*d(m + 3))
+   end subroutine reduce_four
 
    !> A small pivot in place of zero changes nothing but round-off.
    pure subroutine count_negative(pivot, negative)
@@ -259,20 +303,20 @@ contains
    end subroutine solve_narrow
 
    !> Solve with the factor of `factor_wide`.
-   pure subroutine solve_wide(n, width, factor, b)
-      integer, intent(in) :: n, width
-      real(wp), intent(in) :: factor(width + 1, n)
+   pure subroutine solve_wide(n, width, first, factor, inverse, b)
+      integer, intent(in) :: n, width, first(n)
+      real(wp), intent(in) :: factor(width + 1, n), inverse(n)
       real(wp), intent(inout) :: b(n)
-      integer :: j, last
+      integer :: i, k
 
-      do j = 1, n
-         last = min(width, n - j)
-         b(j + 1:j + last) = b(j + 1:j + last) - factor(2:1 + last, j)*b(j)
+      do i = 1, n
+         k = first(i)
+         b(i) = b(i) - inner_product(i - k, factor(2 + width - i + k:, i), b(k:))
       end do
-      b = b*factor(1, :)
-      do j = n, 1, -1
-         last = min(width, n - j)
-         b(j) = b(j) - inner_product(last, factor(2:1 + last, j), b(j + 1:j + last))
+      b = b*inverse
+      do i = n, 1, -1
+         k = first(i)
+         b(k:i - 1) = b(k:i - 1) - factor(2 + width - i + k:, i)*b(i)
       end do
    end subroutine solve_wide
 
@@ -304,7 +348,7 @@ contains
       if (self%width <= narrow) then
          call solve_narrow(self%size, self%triangle, b)
       else
-         call solve_wide(self%size, self%width, self%triangle, b)
+         call solve_wide(self%size, self%width, self%first, self%triangle, self%inverse, b)
       end if
    end subroutine substitute
 

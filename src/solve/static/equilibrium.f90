@@ -40,6 +40,18 @@ module rbs_solve_static_equilibrium
    !> A displacement, in shares of the height, or a rotation that is no more than round-off.
    real(wp), parameter :: of_round_off = 1.0e-12_wp
 
+   !> Rates that were found. They stay while no stiffness changes, as where a spring has come to a closed end
+   !> and is still on its line.
+   type :: known_rates
+      !> Whether they serve, and whether the force was driven
+      logical :: serve = .false., by_force = .false.
+      !> Stiffnesses of the springs (springs), and rates of the position (coordinates)
+      real(wp), allocatable :: k(:), rate(:)
+      !> As in the equilibrium
+      real(wp) :: force = 0.0_wp, displacement = 0.0_wp, dead_load_work = 0.0_wp
+      logical :: is_stable = .false.
+   end type known_rates
+
    type :: equilibrium_type
       !> Whether the dead load of a frame grows with the force, from 0 to 1, in place of the lateral one
       logical :: of_dead_load = .false.
@@ -62,8 +74,10 @@ module rbs_solve_static_equilibrium
       real(wp) :: unbalance = 0.0_wp
       class(structure_type), pointer, private :: structure => null()
       type(band_matrix), private :: matrix
-      !> Pivots of the initial stiffness (unknowns)
-      real(wp), allocatable, private :: pivot(:)
+      !> The rates of which this is the factor
+      type(known_rates), private :: known
+      !> Pivots of the initial stiffness (unknowns), and the band of the axial forces
+      real(wp), allocatable, private :: pivot(:), geometric(:, :)
       !> Unknowns that stay where they are (unknowns)
       logical, allocatable, private :: still(:)
       logical, private :: has_still = .false.
@@ -131,6 +145,8 @@ contains
       call hold_still(self)
       call self%matrix%factor()
       self%pivot = 1.0_wp/self%matrix%triangle(1, :)
+      allocate (self%geometric, source=0.0_wp*initial%band)
+      if (structure%axially_loaded) call structure%add_geometric(self%axial, self%geometric)
    end subroutine create
 
    !> Hold the unknowns that do not move.
@@ -193,25 +209,31 @@ contains
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: y(2)
-      logical :: settled, shares, refines
+      logical :: settled, shares, refines, is_hardened
 
-      associate (structure => self%structure)
-         found = .false.
-         ! Of joints without stiffness in series the band knows only the sum.
-         if (by_force .or. .not. structure%loses_digits) call find_rates(springs%k, .false., found)
-         ! A node between springs without stiffness is free to turn.
-         if (.not. found .and. self%unstable == 0 .and. .not. by_force) then
-            call find_rates(with_hardening(springs%k, structure%initial_stiffness), .true., found)
+      associate (structure => self%structure, known => self%known)
+         found = known%serve .and. (by_force .eqv. known%by_force)
+         if (found) found = .not. any(abs(springs%k - known%k) > 0.0_wp)
+         if (found) then
+            call take_known()
+         else
+            ! Of joints without stiffness in series the band knows only the sum.
+            if (by_force .or. .not. structure%loses_digits) call find_rates(springs%k, .false., found)
+            ! A node between springs without stiffness is free to turn.
+            if (.not. found .and. self%unstable == 0 .and. .not. by_force) then
+               call find_rates(with_hardening(springs%k, structure%initial_stiffness), .true., found)
+            end if
+            if (.not. found) return
+            rate = self%moved(:, 1)
+            call springs%joints%open_layers(rate)
+            call structure%clear_round_off(self%tangent, self%change(:, 1), springs%k, rate)
+            self%force_rate = y(1)
+            self%displacement_rate = 1.0_wp
+            if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
+            self%is_stable = self%matrix%negative == merge(1, 0, self%force_rate < 0.0_wp)
+            self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
+            call keep_rates()
          end if
-         if (.not. found) return
-         rate = self%moved(:, 1)
-         call springs%joints%open_layers(rate)
-         call structure%clear_round_off(self%tangent, self%change(:, 1), springs%k, rate)
-         self%force_rate = y(1)
-         self%displacement_rate = 1.0_wp
-         if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
-         self%is_stable = self%matrix%negative == merge(1, 0, self%force_rate < 0.0_wp)
-         self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
          call solve(2, residual, settled)
          ! In a mechanism the correction of round-off is round-off itself; more than that is found by the row.
          if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height .or. &
@@ -227,13 +249,42 @@ contains
 
    contains
 
+      subroutine keep_rates()
+         associate (known => self%known)
+            known%serve = self%unstable == 0 .and. .not. is_hardened
+            known%by_force = by_force
+            known%k = springs%k
+            known%rate = rate
+            known%force = self%force_rate
+            known%displacement = self%displacement_rate
+            known%dead_load_work = self%dead_load_work_rate
+            known%is_stable = self%is_stable
+         end associate
+      end subroutine keep_rates
+
+      !> Rates that are known, and the residual.
+      subroutine take_known()
+         refines = self%structure%loses_digits
+         associate (known => self%known)
+            rate = known%rate
+            self%force_rate = known%force
+            self%displacement_rate = known%displacement
+            self%dead_load_work_rate = known%dead_load_work
+            self%is_stable = known%is_stable
+         end associate
+         call self%structure%linearise(springs%k, self%tangent, self%unstable)
+         call find_residual(self, springs, force)
+      end subroutine take_known
+
       !> Rates with given stiffnesses of the springs.
-      subroutine find_rates(k, is_hardened, found)
+      subroutine find_rates(k, of_none, found)
          real(wp), intent(in), contiguous :: k(:)
          !> Whether springs without stiffness have some
-         logical, intent(in) :: is_hardened
+         logical, intent(in) :: of_none
          logical, intent(out) :: found
 
+         is_hardened = of_none
+         self%known%serve = .false.
          call self%structure%linearise(k, self%tangent, self%unstable, shares)
          refines = is_hardened .or. self%structure%loses_digits
          found = self%unstable == 0 .or. self%may_snap_back
@@ -321,9 +372,8 @@ contains
       logical, intent(out) :: found
 
       associate (structure => self%structure, matrix => self%matrix)
-         matrix%band = 0.0_wp
+         matrix%band = self%geometric
          call structure%add_stiffness(k, self%tangent, matrix%band)
-         if (structure%axially_loaded) call structure%add_geometric(self%axial, matrix%band)
          call hold_still(self)
          call matrix%factor()
          ! The last pivots of a long chain are small by themselves; their ratio to the sums before counts.

@@ -224,22 +224,33 @@ contains
       do i = 1, size(node)
          do j = 1, 3
             associate (of => leader(order(i), j))
-               if (j == 1 .and. node(of)%follows_floor()) then
-                  call number_floor(frame, order(i), frame%plan%number(:, node(of)%storey))
-                  cycle
-               end if
-               if (node(of)%held(j)) cycle
-               if (frame%number(j, of) == 0) then
-                  frame%unknowns = frame%unknowns + 1
-                  frame%number(j, of) = frame%unknowns
-               end if
-               frame%number(j, order(i)) = frame%number(j, of)
+               if (j == 1 .and. node(of)%follows_floor()) cycle
+               ! Numbered behind all nodes that it moves, a floor makes the rows of none of them long.
+               if (node(of)%held(j) .or. any(leader(order(i + 1:), j) == of)) cycle
+               frame%unknowns = frame%unknowns + 1
+               frame%number(j, of) = frame%unknowns
             end associate
          end do
          if (any(member%axial_of > 0)) call number_partings(frame, member, order(i))
-         if (node(order(i))%panel%rule == '') cycle
-         frame%unknowns = frame%unknowns + 1
-         frame%beam_rotation(order(i)) = frame%unknowns
+         if (node(order(i))%panel%rule /= '') then
+            frame%unknowns = frame%unknowns + 1
+            frame%beam_rotation(order(i)) = frame%unknowns
+         end if
+         if (.not. node(order(i))%follows_floor()) cycle
+         associate (storey => node(order(i))%storey)
+            if (any(node(order(i + 1:))%follows_floor() .and. node(order(i + 1:))%storey == storey)) cycle
+            do j = 1, 3
+               if (frame%plan%held(j)) cycle
+               frame%unknowns = frame%unknowns + 1
+               frame%plan%number(j, storey) = frame%unknowns
+            end do
+         end associate
+      end do
+      do i = 1, size(node)
+         frame%number(:, i) = [(frame%number(j, leader(i, j)), j=1, 3)]
+         associate (of => node(leader(i, 1)))
+            if (of%follows_floor()) call follow_floor(frame, i, frame%plan%number(:, of%storey))
+         end associate
       end do
       do i = 1, size(member)
          call find_numbers(frame, node, member(i), i, number, width)
@@ -249,19 +260,14 @@ contains
       if (any(frame%beam_rotation > 0)) frame%half_width = max(frame%half_width, 1)
    end subroutine number_unknowns
 
-   !> The unknowns of a floor that move a node, with their shares: number those that are met first.
-   subroutine number_floor(frame, node, floor)
+   !> Let a node move with its floor: unknowns and their shares.
+   subroutine follow_floor(frame, node, floor)
       type(frame_type), intent(inout) :: frame
       integer, intent(in) :: node
-      !> (3)
-      integer, intent(inout) :: floor(:)
+      !> Numbers of its unknowns (3)
+      integer, intent(in) :: floor(:)
       integer :: j, moving, at(3)
 
-      do j = 1, 3
-         if (frame%plan%held(j) .or. floor(j) > 0) cycle
-         frame%unknowns = frame%unknowns + 1
-         floor(j) = frame%unknowns
-      end do
       moving = 0
       at = 0
       associate (share => frame%plan%share(:, frame%plane(node), frame%storey(node)))
@@ -274,7 +280,7 @@ contains
       end associate
       frame%number(1, node) = at(1)
       frame%also(:, node) = at(2:)
-   end subroutine number_floor
+   end subroutine follow_floor
 
    !> Both planes of a column may open: number the part of its elongation that is of the second.
    subroutine number_partings(frame, member, node)
