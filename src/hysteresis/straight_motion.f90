@@ -87,31 +87,32 @@ contains
 
    !> Springs move at constant rates from given deformations, each on its own line and not beyond its end, and
    !> the coordinates behind them move too.
-   pure subroutine go_along(springs, moving, q, rate, stride, slack, near, count)
+   pure subroutine go_along(springs, moving, q, rate, stride, slack, way, near, count)
       type(spring_array), intent(inout) :: springs
       !> Number of springs that move, the first ones
       integer, intent(in) :: moving
       !> From where (size of `d`), and the rates; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: stride
-      !> Springs that come closer than this to the end of their line, in shares of the end, are near it
-      real(wp), intent(in) :: slack
+      !> Springs that come closer than this to the end of their line, in shares of the end or on a way in units
+      !> of the rates, are near it
+      real(wp), intent(in) :: slack, way
       !> The springs near the ends that they approach, and their number
       integer, intent(out) :: near(moving), count
 
       associate (behind => springs%count + 1)
          springs%d(behind:) = q(behind:) + rate(behind:)*stride
       end associate
-      call advance_along(moving, q, rate, stride, slack, springs%d0, springs%f0, springs%k, &
+      call advance_along(moving, q, rate, stride, slack, way, springs%d0, springs%f0, springs%k, &
                          springs%unload_on_reversal, springs%d, springs%work, springs%lower, springs%upper, &
                          near, count)
    end subroutine go_along
 
    !> The loops of `go_along` on bare arrays, from which the compiler makes vector instructions.
-   pure subroutine advance_along(n, q, rate, stride, slack, d0, f0, k, unload_on_reversal, d, work, lower, &
-                                 upper, near, count)
+   pure subroutine advance_along(n, q, rate, stride, slack, way, d0, f0, k, unload_on_reversal, d, work, &
+                                 lower, upper, near, count)
       integer, intent(in) :: n, unload_on_reversal(n)
-      real(wp), intent(in) :: q(n), rate(n), stride, slack, d0(n), f0(n), k(n)
+      real(wp), intent(in) :: q(n), rate(n), stride, slack, way, d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), lower(n), upper(n)
       integer, intent(out) :: near(n), count
       real(wp) :: to
@@ -128,9 +129,9 @@ contains
          if (unload_on_reversal(i) > 0) lower(i) = d(i)
          if (unload_on_reversal(i) < 0) upper(i) = d(i)
          if (rate(i) > 0.0_wp) then
-            if (upper(i) - d(i) > slack*abs(upper(i))) cycle
+            if (upper(i) - d(i) > slack*abs(upper(i)) + way*rate(i)) cycle
          else
-            if (d(i) - lower(i) > slack*abs(lower(i))) cycle
+            if (d(i) - lower(i) > slack*abs(lower(i)) - way*rate(i)) cycle
          end if
          count = count + 1
          near(count) = i

@@ -540,6 +540,25 @@ def test_round_off_blocks_no_spring(relation: Any, seed: int, case: int) -> None
     assert relation.outcome.judge(rng) <= relation.outcome.bar
 
 
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+@pytest.mark.parametrize(
+    ("relation", "seed", "case"),
+    [
+        (test_mirror, 810, 3),
+        (test_mirror, 906, 32),
+        (test_last_bit_of_targets, 710, 86),
+        (test_last_bit_of_targets, 806, 74),
+    ],
+)
+def test_ends_that_are_met_at_once_are_one_corner(relation: Any, seed: int, case: int) -> None:
+    """Two layers close at deformation zero, of which round-off tells the first.
+
+    Or a hinge and a panel in series come to zero force.
+    """
+    rng = np.random.default_rng((zlib.crc32(relation.__name__.encode()), seed, case))
+    assert relation.outcome.judge(rng) <= relation.outcome.bar
+
+
 @relation(5, judged=0.6, bar=1e-6)
 def test_buildings_go_one_way(rng: Rng) -> float:
     """Drawn buildings in cycles, in another order, in a mirror, targets larger by round-off."""

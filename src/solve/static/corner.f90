@@ -14,7 +14,7 @@ module rbs_solve_static_corner
    implicit none
    private
 
-   public :: turn_corner, report_no_line, is_spent
+   public :: turn_corner, report_no_line, is_spent, same_rate
 
    !> How often all springs may be changed at once while their least number without room stays the same.
    integer, parameter :: patience = 3

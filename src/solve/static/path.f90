@@ -518,24 +518,30 @@ contains
       call self%task%recorder%keep(self%structure, response, self%springs, self%springs%d, error)
    end subroutine keep_row
 
-   !> Whether a spring has reached the open end that it moves to.
-   pure logical function is_on_end(springs, i, d, rate)
+   !> Whether a spring has reached the end that it moves to; with a way, also one that belongs to its line.
+   pure logical function is_on_end(springs, i, d, rate, way)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
-      !> Deformation [m or rad], and its rate, of which only the sign counts
+      !> Deformation [m or rad], and its rate, of which only the sign counts without a way
       real(wp), intent(in) :: d, rate
-      real(wp) :: finish
+      !> Way by which it may be before the end, in units of the rate
+      real(wp), intent(in), optional :: way
+      real(wp) :: finish, slack
+      logical :: open_only
 
       is_on_end = .false.
+      slack = 0.0_wp
+      if (present(way)) slack = way*abs(rate)
+      open_only = .not. present(way)
       ! Most springs are far from their ends, which need not be computed then.
-      if (rate > 0.0_wp .and. .not. springs%includes_upper_end(i)) then
-         if (springs%upper(i) - d > 2.0_wp*on_the_end*abs(springs%upper(i))) return
+      if (rate > 0.0_wp .and. .not. (open_only .and. springs%includes_upper_end(i))) then
+         if (springs%upper(i) - d > 2.0_wp*on_the_end*abs(springs%upper(i)) + slack) return
          finish = springs%end_toward(i, 1)
-         is_on_end = finish - d <= on_the_end*abs(finish)
-      else if (rate < 0.0_wp .and. .not. springs%includes_lower_end(i)) then
-         if (d - springs%lower(i) > 2.0_wp*on_the_end*abs(springs%lower(i))) return
+         is_on_end = finish - d <= on_the_end*abs(finish) + slack
+      else if (rate < 0.0_wp .and. .not. (open_only .and. springs%includes_lower_end(i))) then
+         if (d - springs%lower(i) > 2.0_wp*on_the_end*abs(springs%lower(i)) + slack) return
          finish = springs%end_toward(i, -1)
-         is_on_end = d - finish <= on_the_end*abs(finish)
+         is_on_end = d - finish <= on_the_end*abs(finish) + slack
       end if
    end function is_on_end
 

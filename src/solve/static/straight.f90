@@ -9,7 +9,7 @@ module rbs_solve_static_straight
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_straight_motion, only: go_along, nearest_end
    use rbs_solve_end_state, only: checkpoint_type
-   use rbs_solve_static_corner, only: turn_corner, report_no_line, is_spent
+   use rbs_solve_static_corner, only: turn_corner, report_no_line, is_spent, same_rate
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, state_of, target_of, weakest_spring, is_on_end, &
                                     on_the_end, serialize_path
@@ -24,6 +24,10 @@ module rbs_solve_static_straight
    !> Farther from the ends of their lines than this, relative to them, springs need not be asked whether they
    !> are on one.
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
+
+   !> Ends that are reached within this share of the driven quantity are reached at once: its round-off. Layers
+   !> that close together do so at zero, where no share of a deformation tells.
+   real(wp), parameter :: same_control = 1.0e-13_wp
 
    !> A correction of equilibrium below this share of a deformation is round-off.
    real(wp), parameter :: small_correction = 1.0e-10_wp
@@ -201,7 +205,17 @@ contains
       self%lost_digits = self%equilibrium%lost_digits
       self%is_stable = self%equilibrium%is_stable
       if (direction < 0) self%rate = -self%rate
+      if (is_spent(self)) call rest(self%moving, self%structure%initial_stiffness, self%rate)
    end subroutine solve_line
+
+   !> Springs whose rates are round-off rest: beside a storey without strength nothing else moves.
+   pure subroutine rest(n, initial, rate)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: initial(n)
+      real(wp), intent(inout) :: rate(n)
+
+      where (initial*rate**2 < same_rate**2*maxval(initial*rate**2)) rate = 0.0_wp
+   end subroutine rest
 
    !> Begin the line that was found: where it starts and where it ends. Where the control may turn, its last
    !> digit is a long way of the springs: these are corrected across the path, and the control follows.
@@ -277,15 +291,16 @@ contains
    subroutine go(self, control)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: control
-      real(wp) :: change, force, displacement, moved, d
+      real(wp) :: change, force, displacement, moved, d, way
       integer :: count, j
 
       change = control - self%start
-      call go_along(self%springs, self%moving, self%q, self%rate, abs(change), nearly, self%near, count)
+      way = same_control*abs(control)
+      call go_along(self%springs, self%moving, self%q, self%rate, abs(change), nearly, way, self%near, count)
       do j = 1, count
          associate (i => self%near(j))
             d = self%q(i) + self%rate(i)*abs(change)
-            if (is_on_end(self%springs, i, d, self%rate(i))) call self%arrive(i, self%rate(i))
+            if (is_on_end(self%springs, i, d, self%rate(i), way)) call self%arrive(i, self%rate(i))
          end associate
       end do
       associate (line => self%equilibrium)
