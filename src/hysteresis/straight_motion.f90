@@ -94,8 +94,8 @@ contains
       !> From where (size of `d`), and the rates; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: stride
-      !> Springs that come closer than this to the end of their line, in shares of the end or on a way in units
-      !> of the rates, are near it
+      !> Springs that come closer than this to the end of their line, in shares of the end or on a way in
+      !> units of the rates, are near it
       real(wp), intent(in) :: slack, way
       !> The springs near the ends that they approach, and their number
       integer, intent(out) :: near(moving), count

@@ -253,9 +253,9 @@ contains
       class(static_path), intent(inout) :: path
       real(wp), intent(in) :: at_once
       logical, intent(out) :: found
-      !> Virtual motions of the springs, and gaps; stiffnesses of their lines ahead and of those on which they
-      !> go back
-      real(wp), dimension(path%moving) :: v, gap, forward, backward
+      !> Virtual motions of the springs, and gaps; their weights in the direction of the path; stiffnesses of
+      !> their lines ahead and of those on which they go back
+      real(wp), dimension(path%moving) :: v, gap, weight, forward, backward
       !> Directions ahead, 0 for springs that have none; the line of each: that ahead, that on which it has
       !> come to the corner, that on which it goes back; directions of those that have changed it last, 0 for
       !> others
@@ -268,6 +268,7 @@ contains
       m = path%moving
       gap = abs(path%rate_in(:m))
       gap = max(gap, at_rest*maxval(gap))
+      weight = gap*path%structure%initial_stiffness(:m)
       v = 0.0_wp
       ahead = path%arrived(:m)
       line = on
@@ -279,7 +280,7 @@ contains
       do pivots = 1, 100 + 4*m
          call find_rates(1)
          if (.not. found) exit
-         sense = merge(1, -1, sum(heading*path%rate(:m)*gap*path%structure%initial_stiffness(:m)) > 0.0_wp)
+         sense = merge(1, -1, sum(heading*path%rate(:m)*weight) > 0.0_wp)
          path%rate = sense*path%rate
          call change_first()
          if (all(heading == 0) .or. all(path%arrived(:m) == 0 .or. line /= on)) exit

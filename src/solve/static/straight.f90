@@ -25,8 +25,8 @@ module rbs_solve_static_straight
    !> are on one.
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
 
-   !> Ends that are reached within this share of the driven quantity are reached at once: its round-off. Layers
-   !> that close together do so at zero, where no share of a deformation tells.
+   !> Ends that are reached within this share of the driven quantity are reached at once: its round-off.
+   !> Layers that close together do so at zero, where no share of a deformation tells.
    real(wp), parameter :: same_control = 1.0e-13_wp
 
    !> A correction of equilibrium below this share of a deformation is round-off.
