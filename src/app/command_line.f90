@@ -58,6 +58,7 @@ contains
 
    contains
 
+      !> Take a word that begins with a dash.
       subroutine take_option()
          character(len=:), allocatable :: value
          integer :: mark, status
@@ -111,6 +112,7 @@ contains
          if (mark <= len(word)) call complain("the option '"//word(:mark - 1)//"' takes no value")
       end subroutine take_option
 
+      !> Take any other word: the command, then its topic or its case.
       subroutine take_word()
 
          if (.not. allocated(command%name) .or. help_for(command)) then
@@ -136,6 +138,7 @@ contains
          end if
       end subroutine take_word
 
+      !> Refuse what does not belong together, once all words are taken.
       subroutine check_whole()
 
          if (.not. allocated(command%topic)) command%topic = ''

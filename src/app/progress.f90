@@ -48,6 +48,7 @@ contains
       self%begin = seconds()
    end subroutine start
 
+   !> Show which share is done and how many seconds are left, some times a second.
    subroutine update(self, share)
       class(terminal_progress), intent(inout) :: self
       real(wp), intent(in) :: share

@@ -77,6 +77,7 @@ module rbs_base_band_matrix
 
 contains
 
+   !> Make room for a matrix.
    subroutine create(self, unknowns, width, stiffness)
       class(band_matrix), intent(out) :: self
       integer, intent(in) :: unknowns, width

@@ -163,6 +163,7 @@ contains
       allocate (self%entry(self%count))
    end subroutine list
 
+   !> A number.
    subroutine real_key(self, name, x, unit, bound, meaning, optional)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -181,6 +182,7 @@ contains
                                      optional=is_true(optional)), x)
    end subroutine real_key
 
+   !> A whole number.
    subroutine integer_key(self, name, i, unit, bound, meaning, optional)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -237,6 +239,7 @@ contains
       end do
    end subroutine parameters
 
+   !> A number in the mode of the visit; whole numbers and words too.
    subroutine one_number(self, key, x)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -279,6 +282,7 @@ contains
                                       most=most, meaning=meaning), x)
    end subroutine real_list_key
 
+   !> Whole numbers.
    subroutine integer_list_key(self, name, i, unit, bound, meaning, most, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -295,6 +299,7 @@ contains
       if (allocated(x)) i = nint(x)
    end subroutine integer_list_key
 
+   !> Numbers in the mode of the visit.
    subroutine number_list(self, key, x)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -363,6 +368,7 @@ contains
                                    meaning=meaning), text)
    end subroutine long_text_key
 
+   !> A text or a word in the mode of the visit.
    subroutine one_text(self, key, text)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -415,6 +421,7 @@ contains
       if (present(choice)) is_true = choice
    end function is_true
 
+   !> Add a key to those that are collected.
    subroutine append(self, key)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key

@@ -103,6 +103,7 @@ contains
       if (present(x_8)) call self%item_real(x_8)
    end subroutine items
 
+   !> Save numbers, or restore them.
    pure subroutine item_reals(self, x)
       class(stream_type), intent(inout) :: self
       real(wp), intent(inout), contiguous :: x(:)

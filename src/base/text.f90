@@ -48,6 +48,7 @@ contains
       real_length = len_trim(buffer)
    end function real_length
 
+   !> A whole number as text.
    pure function integer_to_text(i) result(text)
       integer, intent(in) :: i
       character(len=integer_length(i)) :: text

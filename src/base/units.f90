@@ -99,6 +99,7 @@ contains
       out_of_si = converted(self, value, unit, -1)
    end function out_of_si
 
+   !> A value times the sizes of the units in its unit, each with its power: that of m in 'kg m2' is 2.
    elemental real(wp) function converted(self, value, unit, direction)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value

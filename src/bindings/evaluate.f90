@@ -35,6 +35,7 @@ module rbs_bindings_evaluate
 
 contains
 
+   !> Answer a request.
    subroutine evaluate(request, control, answer)
       type(request_type), intent(in) :: request
       !> See `run_block`
@@ -174,6 +175,7 @@ contains
 
    contains
 
+      !> The modes of a structure.
       subroutine answer_modes()
          type(modes_type) :: modes
          integer, allocatable :: count
@@ -213,6 +215,7 @@ contains
          end do
       end subroutine answer_modes
 
+      !> The matrices of a structure, with the names of its unknowns.
       subroutine answer_matrices(paper)
          logical, intent(in) :: paper
          type(matrices_type) :: matrices

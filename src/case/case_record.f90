@@ -249,6 +249,7 @@ contains
          end if
       end subroutine validate_frame
 
+      !> Add a member kind with any numbers in place of a drawing, whose springs Python makes.
       subroutine stand_in(name)
          character(len=*), intent(in) :: name
 

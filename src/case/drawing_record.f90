@@ -306,6 +306,7 @@ contains
       end do
    end subroutine validate
 
+   !> Check the groups of a drawing, by what it is a drawing of.
    subroutine check_values(self, of_frame, drawn, messages)
       class(drawing_record), intent(inout) :: self
       logical, intent(in) :: of_frame, drawn

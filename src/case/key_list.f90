@@ -184,6 +184,7 @@ contains
       end do
    end subroutine keys_as_table
 
+   !> Append a row for each key.
    subroutine append_rows(buffer, keys)
       type(text_buffer), intent(inout) :: buffer
       type(key_type), intent(in) :: keys(:)

@@ -88,6 +88,7 @@ contains
       call resist(self%count, size(f), self%first, self%sums, self%anchor, d(self%before + 1:), f)
    end subroutine forces
 
+   !> Force and moment of each joint at its deformations, from the sums of its layers.
    pure subroutine resist(n, springs, first, sums, anchor, d, f)
       integer, intent(in) :: n, springs, first(n)
       real(wp), intent(in) :: sums(5, n), anchor(2, n), d(2, n)
@@ -160,6 +161,7 @@ contains
       self%is_changed(joint) = .false.
    end subroutine sum_up
 
+   !> Sums of the layers of a joint: stiffness, force and moment at its deformations z.
    pure subroutine add_up(n, y, z, d0, f0, k, sums)
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), z(2), d0(n), f0(n), k(n)

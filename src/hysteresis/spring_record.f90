@@ -110,6 +110,7 @@ contains
       end if
    end subroutine validate
 
+   !> Check the layers of a joint and their springs.
    recursive subroutine validate_layers(self, name, messages)
       type(spring_record), intent(in) :: self
       character(len=*), intent(in) :: name

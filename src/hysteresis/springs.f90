@@ -673,6 +673,7 @@ contains
       call advance_all(self, d)
    end subroutine carry_to
 
+   !> Whether deformations are on their lines, and none is out of bounds.
    pure logical function are_within(n, d, lower, upper)
       integer, intent(in) :: n
       real(wp), intent(in) :: d(n), lower(n), upper(n)
@@ -713,6 +714,7 @@ contains
       if (size(d) > self%count) self%d(self%count + 1:) = d(self%count + 1:)
    end subroutine advance_all
 
+   !> Move springs along their lines, with their works; one-way lines then begin where the springs are.
    pure subroutine advance_each(n, to, d0, f0, k, unload_on_reversal, d, work, lower, upper)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)

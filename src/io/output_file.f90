@@ -154,6 +154,7 @@ contains
       end do
    end subroutine put
 
+   !> Write what is in the buffer.
    subroutine flush_buffer(self, error)
       class(output_file), intent(inout) :: self
       type(error_type), allocatable, intent(inout) :: error

@@ -39,6 +39,7 @@ contains
 
    contains
 
+      !> Read the first line, the remarks and the numbers.
       subroutine read_numbers()
          character(len=80) :: line
          integer :: status, i, count

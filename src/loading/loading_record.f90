@@ -193,6 +193,7 @@ contains
          call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', messages, number)
       end subroutine check_unit
 
+      !> Check cycles: those of a named protocol, or of amplitudes.
       subroutine validate_protocol()
 
          if (self%protocol /= '') then
@@ -224,6 +225,7 @@ contains
          end if
       end subroutine validate_named
 
+      !> Check cycles of amplitudes.
       subroutine validate_amplitudes()
 
          if (is_given(self%reference) .or. is_given(self%largest)) then
@@ -245,6 +247,7 @@ contains
          end if
       end subroutine validate_amplitudes
 
+      !> Check a loading of values point by point.
       subroutine validate_values()
 
          if (.not. allocated(self%values)) then

@@ -54,6 +54,7 @@ contains
       end do
    end subroutine response_spectrum
 
+   !> Peaks of the response of one oscillator, also of its free vibration after the motion.
    pure subroutine peaks_of(acceleration, dt, period, damping, peak)
       real(wp), intent(in) :: acceleration(:), dt, period, damping
       real(wp), intent(out) :: peak(:)

@@ -173,6 +173,7 @@ contains
                      'drifts are parts of the height (2 per cent is 0.02), forces are in N'//remedy)
    end subroutine drift_note
 
+   !> Add the notes about a structure and its loading.
    subroutine structure_notes(case, structure, notes)
       !> Validated
       type(case_record), intent(in) :: case

@@ -84,6 +84,7 @@ contains
       call self%record(self%row, error)
    end subroutine keep
 
+   !> Keep a row.
    subroutine record(self, row, error)
       class(array_recorder), intent(inout) :: self
       real(wp), intent(in) :: row(:)

@@ -147,6 +147,7 @@ contains
       end if
    end subroutine concrete_both
 
+   !> Stress and tangent of the curve of compression.
    pure subroutine in_compression(law, strain, stress, tangent)
       type(concrete_type), intent(in) :: law
       real(wp), intent(in) :: strain

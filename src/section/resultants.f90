@@ -101,6 +101,7 @@ contains
          sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)
       end subroutine add_cut_strip
 
+      !> The bars, each less the concrete that it takes the place of.
       pure subroutine add_bars(sums)
          type(resultants_type), intent(inout) :: sums
          real(wp) :: strain, stress, tangent, displaced, slope, force

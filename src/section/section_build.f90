@@ -120,6 +120,7 @@ contains
          end do
       end subroutine take_boundaries
 
+      !> Check that bars are inside of the concrete and do not fill it.
       subroutine check_bars()
          real(wp) :: edge
          integer :: i
@@ -170,6 +171,7 @@ contains
       call cut_strips(section%shape, section%core_shape, strips, section%strips)
    end subroutine build_section
 
+   !> Check that hoops leave a core and fit it.
    subroutine check_core(section, messages)
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages

@@ -140,6 +140,7 @@ contains
       end do
    end function area_between
 
+   !> Area between two heights of a shape without a void [m2].
    elemental real(wp) function solid_area_between(self, lo, hi) result(area)
       type(shape_type), intent(in) :: self
       real(wp), intent(in) :: lo, hi
@@ -175,6 +176,7 @@ contains
       end do
    end function moment_between
 
+   !> First moment of this area about mid-depth [m3].
    elemental real(wp) function solid_moment_between(self, lo, hi) result(moment)
       type(shape_type), intent(in) :: self
       real(wp), intent(in) :: lo, hi

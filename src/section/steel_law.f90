@@ -56,6 +56,7 @@ contains
       call steel_both(law, strain, stress, tangent)
    end function steel_stress
 
+   !> Stress and tangent at a strain.
    elemental subroutine steel_both(law, strain, stress, tangent)
       type(steel_type), intent(in) :: law
       real(wp), intent(in) :: strain

@@ -242,8 +242,8 @@ contains
       end do
    end function product_of
 
-   !> Springs without stiffness share the motion of the basis, which they have as if they were alone in the
-   !> row, on their initial lines.
+   !> Share the motions of those springs of the basis that have no stiffness with the other springs that have
+   !> none: all of these move as if they were alone in the row, with their initial stiffnesses.
    pure subroutine share_motion(self, n, k_basis, motion)
       class(series_tangent), intent(inout) :: self
       integer, intent(in) :: n

@@ -306,6 +306,7 @@ module rbs_structure_structure
 
 contains
 
+   !> Make room for the forces of a structure, under its axial forces at rest.
    subroutine create(self, structure)
       class(motion_result), intent(out) :: self
       class(structure_type), intent(in) :: structure

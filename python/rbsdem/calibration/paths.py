@@ -174,6 +174,7 @@ class Parameters:
 
 
 def _names(known: list[str], free: Any) -> list[str]:
+    """Return the names of the parameters to fit, if the column has them."""
     if isinstance(free, str) or not isinstance(free, Sequence | Mapping | set):
         raise InputError(f"calibrate: free = {free!r} must be a list of names")
     names, more = list(free), len(known) - _MANY

@@ -197,6 +197,7 @@ class _Limits:
 
 
 def _asce_41(d: _Demand, knowledge: float) -> _Limits:
+    """Return the limits of an end by chapter 10 of ASCE 41-17."""
     if "joint" in d.kind:
         raise InputError("table 10-11 is not built in; give limits of the node")
     load = max(d.axial, 0.0)
@@ -252,6 +253,7 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
 
 
 def _en_1998_3(d: _Demand, primary: bool, detailing: float = 1.0) -> _Limits:
+    """Return the limits of an end by annex A of EN 1998-3."""
     if "joint" in d.kind:
         return _ec_8_joint(d)
     if d.section.shape != "rectangle":

@@ -315,6 +315,7 @@ def _moved_along(building: Building) -> tuple[BuildingModes, Array, Array]:
 
 
 def _capacity_of_building(push: BuildingResult) -> Capacity:
+    """Return the capacity of a building with the mode that moves most along the push."""
     building = push.building
     modal, along, shares = _moved_along(building)
     if not shares.any():

@@ -48,6 +48,7 @@ def beyond(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array,
 
 
 def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Return numbers, places and forces where a path is farther than ever, and gets there again."""
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))[:-1]
     rows = np.flatnonzero(x > so_far)
     after = rows[rows > 0]
@@ -64,6 +65,7 @@ def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
 
 
 def _envelope(x: Array, y: Array, turns: np.ndarray) -> tuple[Array, Array, Array]:
+    """Return the rows of `_beyond`, and of each leg that all but gets there the largest force."""
     numbers, xs, ys = ([part] for part in _beyond(x, y))
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))
     if x.size >= 2:

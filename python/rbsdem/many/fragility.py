@@ -608,6 +608,7 @@ class WithFragility(Tabular, ABC):
         return self._fit(name, state, beta)
 
     def _fit(self, name: str, state: tuple[str, float], beta: float | None) -> Fragility:
+        """Return a fragility whose dispersion has that of the drift at axial failure."""
         label = self.runs.measure.label
         curve = fit_fragility(name, self._data(*state), label, beta)
         if self.at_ends is None or beta is not None:

@@ -141,6 +141,7 @@ def _is_pair(item: Any) -> bool:
 
 
 def _motion(name: str | int, item: Any) -> Motion:
+    """Return a motion of any of the forms in which one is given."""
     if is_pair(item):
         pair = dict(zip(("ground_acceleration", "ground_acceleration_y"), item, strict=True))
         times, loads = acting(None, pair, "a pair of motions")

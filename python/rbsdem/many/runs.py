@@ -385,6 +385,7 @@ class Collector:
             )
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
+        """Return more runs; messages count those before them too."""
         keywords = settings | {"scales": scales, "measures": list(self.names)}
         before = sum(part["status"].size for part in self.parts)
         bar = keywords["progress"]

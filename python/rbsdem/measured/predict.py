@@ -393,6 +393,7 @@ def scores(rows: Iterable[Prediction]) -> DataFrame:
 
 
 def _scores(row: Prediction) -> dict[str, Any]:
+    """Return the row of a prediction in the table of scores."""
     s = row.specimen
     record = {
         "name": s.name,

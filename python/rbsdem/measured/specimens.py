@@ -540,6 +540,7 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
 
 
 def _specimen(row: dict[str, str | None], where: str, table: Path) -> Specimen:
+    """Return the specimen of a row of the table."""
     values = _values(row, Specimen, where)
     notes = values.pop("notes", None) or ""
     again = re.search(r"identical to PEER id (\d+)", notes)
@@ -827,6 +828,7 @@ def _rectangle(
     corner: tuple[float, float],
     intermediate: tuple[float, float],
 ) -> list[_Bar]:
+    """Return the bars of a rectangle; what the table leaves open is added to the assumptions."""
     specimen = sheet.specimen
     across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
     if across is None or along is None:

@@ -703,6 +703,7 @@ def _check_offset(d: Array, f: Array, zero: bool | None, where: str) -> None:
 
 
 def _check_order(d: Array, f: Array, where: str) -> None:
+    """Refuse a force of the wrong sign, and columns that are exchanged."""
     together = float(np.dot(d, f))
     area = 0.5 * float(np.sum(f[:-1] * np.diff(d) - d[:-1] * np.diff(f)))
     size = float(np.max(np.abs(d)) * np.max(np.abs(f)))

@@ -520,6 +520,7 @@ def ladders(case: StudyCase, look: Probe, methods: Sequence[str]) -> list[list[S
 
 
 def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[list[Setting]]:
+    """Return the settings to try, those of one method from coarse to fine."""
     families = []
     if "rk4" in methods:
         for events in ("step", "located"):

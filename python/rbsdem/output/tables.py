@@ -1,4 +1,4 @@
-"""Tables: a frame as csv, as Parquet, and on the terminal in the units of paper.
+"""Tables: a frame as csv, and on the terminal in the units of paper.
 
 Every record of many rows has a `to_pandas`, in SI; what is written or printed of it comes from that
 frame, here.

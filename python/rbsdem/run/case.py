@@ -280,6 +280,7 @@ def _case_of(
     acting: Any,
     more: dict[str, Any],
 ) -> Case:
+    """Return the case of a structure and of the loadings that act."""
     loads: dict[str, Any] = {
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
@@ -414,6 +415,7 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
 def _result(
     about: dict[str, Any], arrays: dict[str, Any]
 ) -> ColumnResult | FrameResult | BuildingResult:
+    """Return a result from the texts and arrays of its file."""
     with notes_off():
         # Losses at a time are refused in a static case.
         method = "auto" if about["summary"]["analysis"] == "dynamic" else "static"

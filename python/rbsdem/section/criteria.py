@@ -278,6 +278,7 @@ def _of_landmarks(
 def _of_layers(
     column: Column, joint: int, spring: Layered, names: Collection[str]
 ) -> Iterator[Criterion]:
+    """Yield the criteria of a joint by the strains of its layers."""
     if column.opens:  # Its openings are those of axial springs.
         return
     gauge = column.gauge(joint)

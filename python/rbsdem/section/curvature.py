@@ -221,6 +221,7 @@ def _outside(
 
 
 def _wall_warnings(section: Section, span: float, axial_load: float) -> tuple[str, ...]:
+    """Return remarks on a wall that is unlike those that were tested."""
     values = {
         "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
         "concrete strength": section.concrete.fc,

@@ -684,6 +684,7 @@ def _kind(
     where: Place,
     spans: tuple[Pair, Pair] | None = None,
 ) -> FrameMember | None:
+    """Return the kind of a member: as it is given, or made of its section."""
     if not is_drawn(cell):
         return cell  # type: ignore[no-any-return]
     clear = length - sum(ends)

@@ -149,6 +149,7 @@ class Answers:
         self._kept[key_of(case)] = known
 
     def _solve(self, given: Any) -> Answered:
+        """Return the answer of the program to the groups or the text of a case."""
         faults = Faults([] if isinstance(given, str) else given)
         # A section may be drawn although the case is refused.
         sections = {} if isinstance(given, str) else sections_of(given)
@@ -194,6 +195,7 @@ class Answers:
         return {"columns": [self._loop(case) for case in cases]}
 
     def _loop(self, case: Any) -> dict[str, Any]:
+        """Return what the page draws of a response."""
         begun = time.perf_counter()
         found = self.solved(case)
         drawing, result = found.drawing, found.result
@@ -415,6 +417,7 @@ def _peak(values: Array) -> float | None:
 
 
 def _band(found: Answered) -> dict[str, Any]:
+    """Return the band of a prediction."""
     result = found.result
     if found.drawing is None or result.dynamic:
         return {"none": "a band is for a drawn column on a path"}

@@ -181,6 +181,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._guarded(self._post)
 
     def _guarded(self, work: Callable[[str], None]) -> None:
+        """Do the work of a request, and answer whatever goes wrong in it."""
         if not self.server.room.acquire(blocking=False):
             self._refuse(503, "too many requests at once")
             return

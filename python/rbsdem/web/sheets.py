@@ -244,6 +244,7 @@ def _of_plan(building: Building) -> Sheet:
 
 @sheets_of.register
 def _of_frame(result: FrameResult) -> Iterator[Sheet]:
+    """Yield the sheets of a response of a frame."""
     yield _of_structure(result.frame)
     largest = int(np.abs(result.displacement).argmax())
     whole = "Displacements, hinges and forces at the largest displacement of the top."
@@ -353,6 +354,7 @@ def _storeys(found: Assessment) -> DataFrame:
 def _of_section(
     drawing: Section, axial_load: float | None = None, length: float | None = None
 ) -> Iterator[Sheet]:
+    """Yield the sheets of a section under an axial load."""
     if axial_load is None:
         raise InputError(
             "report: axial_load is missing; give it in N, as report(section, path, axial_load=1e6)"
@@ -381,6 +383,7 @@ def _of_section(
 
 @sheets_of.register
 def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
+    """Yield the sheets of an ensemble."""
     yield _of_structure(next(iter(found.columns.values())))
     table = found.to_pandas()
     states = {"status": list(found.counts), "runs": list(found.counts.values())}
@@ -400,6 +403,7 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
 
 @sheets_of.register
 def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[Sheet]:
+    """Yield the sheets of an incremental dynamic analysis."""
     structure = next(iter(found.runs.columns.values()))
     yield _of_structure(structure)
     states = ", ".join(limits or {"collapse": None})
@@ -447,6 +451,7 @@ def _damped(structure: Structure) -> str:
 
 
 def _of_structure(structure: Structure) -> Sheet:
+    """Return the sheet of what was given of a structure."""
     if isinstance(structure, LayeredColumn) and structure.drawing is not None:
         (own,) = (given for name, given in _core.groups(structure._groups()) if name == "column")
         shown = ("height", "axial_load", "mass", "top_mass", "kinematics")

@@ -178,6 +178,7 @@ contains
       end select
    end subroutine next
 
+   !> Set the branch that begins at the end of the present one in a direction.
    subroutine find_branch(self, now, branch, direction)
       type(steel_rule), intent(in) :: self
       type(steel_state), intent(inout) :: now

@@ -86,6 +86,7 @@ contains
       end do
    end subroutine make_column
 
+   !> Make the frame of a case.
    subroutine make_frame(case, frame, before, error)
       type(case_record), intent(inout) :: case
       type(frame_type), intent(inout) :: frame

@@ -212,6 +212,7 @@ contains
       if (.not. is_new) is_new = run(i)%column /= run(i - 1)%column .or. run(i)%motion /= run(i - 1)%motion
    end function is_new
 
+   !> Plan the runs of a column under a motion, by the run that does not scale it.
    subroutine plan_run(column, motion, plan, error)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion

@@ -168,6 +168,7 @@ contains
       spring%direction = 0
    end subroutine spring_from_lane
 
+   !> Put spring i into lane l.
    pure subroutine spring_to_lane(y, l, i, spring)
       type(body_arrays), intent(inout) :: y
       integer, intent(in) :: l, i

@@ -89,6 +89,7 @@ contains
          end associate
       end subroutine assemble_bands
 
+      !> The matrices of a column.
       subroutine assemble_column(column)
          class(column_type), intent(in) :: column
          character(len=9) :: names(3)

@@ -216,6 +216,7 @@ contains
       if (.not. allocated(error)) call frequency_range(structure, structure%axially_loaded, lowest, highest)
    end subroutine frequency_bounds
 
+   !> The lowest and the highest frequency of a structure.
    subroutine frequency_range(structure, axial, lowest, highest)
       class(structure_type), intent(in) :: structure
       !> Whether the axial forces count

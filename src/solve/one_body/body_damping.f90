@@ -33,6 +33,7 @@ contains
       end select
    end function column_of_one_body
 
+   !> The damping of a column of one body.
    pure type(body_damping) function damping_of_body(column, joint_damping, modal) result(damping)
       type(column_type), intent(in) :: column
       !> In proportion to the initial stiffness of the springs (2); of the modes (2, 2)

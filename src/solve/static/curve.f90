@@ -48,6 +48,7 @@ module rbs_solve_static_curve
 
 contains
 
+   !> Make the curve from a point to the next one.
    subroutine set(self, structure, near, far)
       class(curve_type), intent(inout) :: self
       class(structure_type), intent(in) :: structure

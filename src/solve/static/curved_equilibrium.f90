@@ -83,6 +83,7 @@ module rbs_solve_static_curved_equilibrium
 
 contains
 
+   !> Make room for a column.
    subroutine create(self, column, by_force, varies)
       class(curved_equilibrium), intent(out) :: self
       !> Under the axial load with which the path begins

@@ -101,6 +101,7 @@ module rbs_solve_static_equilibrium
 
 contains
 
+   !> Make room for a structure.
    subroutine create(self, structure, of_dead_load)
       class(equilibrium_type), intent(out) :: self
       class(structure_type), intent(in), target :: structure
@@ -346,6 +347,7 @@ contains
          regular = .not. self%structure%loses_digits
       end subroutine solve
 
+      !> Change i under the load, or so that the driven displacement changes by one that is given.
       subroutine solve_once(i, displacement, more, regular)
          !> Column of the changes
          integer, intent(in) :: i

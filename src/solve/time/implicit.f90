@@ -111,6 +111,7 @@ contains
                 self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
 
+   !> Take a step; a column of one body has a way of its own, which may fail.
    subroutine take_step(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state

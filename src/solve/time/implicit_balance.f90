@@ -359,6 +359,7 @@ contains
       end do
    end subroutine measure
 
+   !> Largest force and largest residual of a group of unknowns.
    pure subroutine measure_group(group, unknowns, springs, inertias, a, f, r, scale, rest)
       type(unknown_group), intent(in) :: group
       integer, intent(in) :: unknowns, springs

@@ -205,6 +205,7 @@ contains
       if (self%column%opens) x(self%column%at(tension, i)) = y(tension)
    end subroutine put_joint
 
+   !> Go a share of the correction, and find the residual there.
    subroutine try(self, state, share)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state

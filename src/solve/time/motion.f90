@@ -47,6 +47,7 @@ module rbs_solve_time_motion
 
 contains
 
+   !> Set what the equation of motion of a structure has.
    subroutine create(self, structure, acts, error)
       class(equation_of_motion), intent(out) :: self
       class(structure_type), intent(in), target :: structure

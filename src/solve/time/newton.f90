@@ -97,6 +97,7 @@ module rbs_solve_time_newton
 
 contains
 
+   !> Go on by h; a step that does not converge is cut.
    subroutine advance(self, state, h, error)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state

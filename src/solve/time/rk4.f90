@@ -37,6 +37,7 @@ module rbs_solve_time_rk4
 
 contains
 
+   !> Make room for a structure.
    subroutine create(self, structure)
       class(rk4_scheme), intent(out) :: self
       class(structure_type), intent(in) :: structure

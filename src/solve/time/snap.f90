@@ -18,6 +18,7 @@ submodule (rbs_solve_time_implicit) rbs_solve_time_snap
 
 contains
 
+   !> Snap, unless the step has converged and has lost next to no energy.
    module subroutine snap_unless_smooth(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state

@@ -129,6 +129,7 @@ contains
       call after%finish_saving()
    end subroutine keep_state
 
+   !> The state at the start of an analysis.
    subroutine start_state(state, structure, loads, initial, begin, error)
       type(state_type), intent(out) :: state
       class(structure_type), intent(in) :: structure

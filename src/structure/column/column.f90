@@ -331,6 +331,7 @@ contains
       if (self%opens) y = y + sum(d(2*self%n + 1:))
    end function top_height
 
+   !> Rotations of the bodies from those of the joints.
    pure subroutine rotations(self, d, rotation)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
@@ -366,6 +367,7 @@ contains
       end do
    end function angular_momentum
 
+   !> The acceleration of a spring by the largest forces alone, with which a computed one is compared.
    pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
       class(column_type), intent(in) :: self
       integer, intent(in) :: spring
@@ -517,6 +519,7 @@ contains
       call joint_forces(self%n, self%kinds, self%lower, self%upper, self%inertias*x, momentum)
    end subroutine momenta
 
+   !> What a row of a response holds.
    pure subroutine channels(self, contents, channel)
       class(column_type), intent(in) :: self
       type(row_contents), intent(in) :: contents
@@ -534,6 +537,7 @@ contains
       channel = pack(channel, held)
    end subroutine channels
 
+   !> Fill a row of a response.
    pure subroutine fill_row(self, contents, response, springs, d, row)
       class(column_type), intent(in) :: self
       type(row_contents), intent(in) :: contents
@@ -573,6 +577,7 @@ contains
       end do
    end subroutine fill_row
 
+   !> The largest rotation of a body.
    pure real(wp) function largest_rotation(self, d) result(largest)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)

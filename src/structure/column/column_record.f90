@@ -268,6 +268,7 @@ contains
          end if
       end subroutine check_sum
 
+      !> Check the springs of one direction.
       subroutine check_springs(springs, name, place)
          type(spring_record), intent(in), allocatable :: springs(:)
          !> For messages: 'shear'; their place, see `rbs_hysteresis_rule`

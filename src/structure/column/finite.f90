@@ -460,6 +460,7 @@ contains
       end do
    end subroutine body_velocities
 
+   !> Work of a signal of one per time.
    pure real(wp) function speed(self, signal, d, v)
       class(finite_chain_type), intent(in) :: self
       integer, intent(in) :: signal
@@ -541,6 +542,7 @@ contains
       y = top(2)
    end function top_height
 
+   !> Place of the top.
    pure function top_place(self, d) result(top)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
@@ -556,6 +558,7 @@ contains
       end do
    end function top_place
 
+   !> Acceleration of the top along x.
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), a(:)

@@ -88,6 +88,7 @@ contains
 
    contains
 
+      !> Set the heights of the joints.
       subroutine set_heights()
          integer :: i, n
 
@@ -168,6 +169,7 @@ contains
          column%lifted_joint = column%mass_above(:n)
       end subroutine set_lifted_masses
 
+      !> Set the places of the springs.
       subroutine set_springs()
          integer :: i, joint, n
 

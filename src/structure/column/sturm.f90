@@ -145,6 +145,7 @@ contains
       call substitute(self, self%inertia*x, d)
    end subroutine solve
 
+   !> Deformations under loads: forces from the top down, deformations from the ground up.
    pure subroutine substitute(self, load, d)
       type(sturm_chain), intent(in) :: self
       !> Forces and moments on the bodies, slips and relative rotations of the joints (2, n)
@@ -200,6 +201,7 @@ contains
       if (self%held) x(2*self%n) = 0.0_wp
    end subroutine motion
 
+   !> d' K d of a motion: that of the springs less that of the axial forces.
    pure real(wp) function stiffness_of(self, d, x) result(total)
       class(sturm_chain), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), x(:)

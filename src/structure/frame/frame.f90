@@ -349,6 +349,7 @@ contains
       g(massed) = g(massed) - force
    end subroutine damp_modes
 
+   !> Add a factor times the damping matrix.
    subroutine add_damping(self, factor, tangent, band)
       class(frame_type), intent(in) :: self
       real(wp), intent(in) :: factor

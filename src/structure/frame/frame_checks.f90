@@ -68,6 +68,7 @@ contains
       end do
    end subroutine check_values
 
+   !> Check the kinds of members.
    subroutine check_kinds(record, messages)
       type(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages
@@ -91,6 +92,7 @@ contains
       end do
    end subroutine check_kinds
 
+   !> Check the infills.
    subroutine check_infills(record, messages)
       type(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages

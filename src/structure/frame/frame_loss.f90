@@ -39,6 +39,7 @@ contains
       end do
    end procedure next_failed_member
 
+   !> Whether a member has failed in shear and is at the drift of its axial failure.
    logical function has_failed(frame, member, springs)
       type(frame_type), intent(in) :: frame
       integer, intent(in) :: member

@@ -184,6 +184,7 @@ contains
 
    contains
 
+      !> Check a rule of places and the name in it.
       subroutine check_cell(cell, group, key, what, most)
          type(cell_record), intent(in) :: cell
          character(len=*), intent(in) :: group, key, what
@@ -368,6 +369,7 @@ contains
       call check_floors(self%node, messages)
    end subroutine put_nodes
 
+   !> Put in the members that are given one by one.
    subroutine put_members(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
