@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.cli import main
 from rbsdem.codes import judge
 from rbsdem.web.answers import Answers
 from rbsdem.web.report import report_of_page
@@ -158,6 +159,9 @@ def test_one_building_through_every_door(tmp_path, monkeypatch):
         # Its tables are compared, and figures take long.
         patched.setattr("rbsdem.web.report.html_of", lambda sheet: sheet.heading)
         exec(drawn, python)
+        two = case_text + "&assess code = 'asce_41', level = 'LS' /\n"
+        Path("two.nml").write_text(two)
+        assert main(["report", "two.nml"]) == 0
     assert Path("house.html").is_file()
     written = Path("case")
     written.mkdir()
@@ -167,9 +171,13 @@ def test_one_building_through_every_door(tmp_path, monkeypatch):
     assert str(python["demand"]) in printed.stdout
     assert str(python["checked"]) in printed.stdout
     assert printed.stderr == ""
-    tables = {file.name: file.read_text() for file in Path("house_files").glob("*.csv")}
+    tables, *others = (
+        {file.name: file.read_text() for file in folder.glob("*.csv")}
+        for folder in (Path("house_files"), Path("two_files"), written / "house_files")
+    )
     assert len(tables) >= 5
-    assert tables == {file.name: file.read_text() for file in written.glob("house_files/*.csv")}
+    assert others == [tables, tables]
+    assert "limit_LS" in Path("two_2_files/all_members.csv").read_text()
     page = Answers()
     state = page.open({"text": case_text}, None)["state"]
     known = page.solved(state["cases"][0])

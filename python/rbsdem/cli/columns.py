@@ -29,7 +29,7 @@ from rbsdem.many.ensemble import ensemble as run_ensemble
 from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
-from rbsdem.many.judgement import asked, checked, judge
+from rbsdem.many.judgement import Judgement, asked, checked, judge
 from rbsdem.many.runs import NAMES, OF_PAIRS
 from rbsdem.many.store import store_status
 from rbsdem.methods.ladder import OF_SETTING
@@ -122,21 +122,31 @@ def on_springs(program: str, command: str, path: str, *options: str) -> int:
     if command != "run" or code not in (0, _COLLAPSED) or not (page or asked(case)):
         return code
     try:
-        if not asked(case):
-            _tell_files(write_record(case.run(), page, {}))
-            return code
-        judged = judge(case)
-        if "--quiet" not in words and "-q" not in words:
+        judged = judge(case) if asked(case) else None
+        if judged is not None and "--quiet" not in words and "-q" not in words:
             print(judged)
-        if page and judged.assessments:
-            more: dict[str, Any] = {"target": judged.target, "check": judged.check}
-            _tell_files(write_record(judged.assessments[0], page, {"title": case.title}, **more))
-        elif page:
-            _tell_files(write_record(judged.result, page, {"title": case.title}))
+        if page:
+            _tell_files(_report_of(case, judged, Path(page), {"title": case.title}))
     except RbsdemError as error:
         sys.stderr.writelines(f"rbsdem: {line}\n" for line in str(error).splitlines())
         return 2 if isinstance(error, InputError) else 1
     return code
+
+
+def _report_of(
+    case: Case, judged: Judgement | None, page: Path, head: Mapping[str, str | None], *units: Any
+) -> list[Path]:
+    """Write the reports of a case of a frame, of each acceptance or of its response."""
+    if judged is None or not judged.assessments:
+        record = case.run() if judged is None else judged.result
+        return write_record(record, page, head, *units)
+    files: list[Path] = []
+    more: dict[str, Any] = {"target": judged.target, "check": judged.check}
+    for number, assessment in enumerate(judged.assessments, 1):
+        # By the name of the case, NAME.html, NAME_2.html
+        file = page.with_stem(f"{page.stem}_{number}") if files else page
+        files += write_record(assessment, file, head, *units, **more)
+    return files
 
 
 def _refuse_history(case: Case, path: str, words: Sequence[str]) -> None:
@@ -654,8 +664,8 @@ def report(
     r"""Write a case as one html file that opens offline and prints on A4.
 
     It holds loops and limit states and, for a drawn column, section, diagrams, band and code
-    values; for a frame its drawing with hinges, limit states and forces, with the tables as csv
-    in a folder beside it, CASE_files.
+    values; for a frame its drawing with hinges, limit states and forces, or the target and the
+    acceptance that the case asks for, with the tables as csv in a folder beside it, CASE_files.
 
     \b
     Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
@@ -665,7 +675,8 @@ def report(
     if isinstance(model.column, Frame):
         units: Any = tuple(paper.split(","))
         head["title"] = title or model.title
-        _tell_files(write_record(model.run(), file, head, units))
+        judged = judge(model) if asked(model) else None
+        _tell_files(_report_of(model, judged, file, head, units))
         return 0
     answers = Answers(None if tests is None else tests_of(tests))
     start = start_of(case, answers)
