@@ -319,7 +319,9 @@ def study_case(
             )
         (path,) = histories.values()
         if path.size < 2:
-            raise InputError(f"compare_methods: the path has too few points ({path.size}); give 2 or more")
+            raise InputError(
+                f"compare_methods: the path has too few points ({path.size}); give 2 or more"
+            )
         points = np.arange(float(path.size))
         return StudyCase(column, points, histories, None, collapse_drift, static=True)
     if "displacement" in histories:
