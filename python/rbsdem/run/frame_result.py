@@ -710,6 +710,6 @@ def shear_span_note(result: FrameResult) -> str:
     more = f", and {len(off_spans) - 1} more are off by a fifth" if len(off_spans) > 1 else ""
     return (
         f"member {name}: at the largest shear force of its {end} M/V is {span:.3g} m, and its "
-        f"strength in shear was found for {made:.3g} m{more}; make it anew with shear_spans of "
-        "section.member"
+        f"strength in shear was found for {made:.3g} m{more}; section.member with shear_spans "
+        "makes it anew, and a grid takes that in place of the section"
     )

@@ -358,8 +358,7 @@ class Answers:
         except RbsdemError as error:
             told = re.sub(r"^text\b", lambda _: shown, str(error))
             return {"faults": [{"field": "loading.file", "text": told}]}
-        key = self.keep_record(motion, shown)
-        return {"file": key, "pga": motion.pga, "length": motion.length}
+        return {"file": self.keep_record(motion, shown)}
 
 
 #: Questions, by the last part of the path.
@@ -386,7 +385,7 @@ def to_json(result: ColumnResult) -> dict[str, Any]:
     footing, loss = result.column.footing is not None, None
     if not result.dynamic:
         loss = number(abs(result.strength_loss()) / height)
-    numbered = ("displacement", "force", "drift", "threshold")
+    numbered = ("displacement", "force", "drift")
     answer: dict[str, Any] = {
         "displacement": numbers(result.displacement[rows]),
         "force": numbers(force[rows]),
@@ -429,7 +428,6 @@ def _band(found: Answered) -> dict[str, Any]:
     return {
         "lower": numbers(band.lower),
         "upper": numbers(band.upper),
-        "samples": len(band.samples),
         **{name: _interval(getattr(band, name)) for name in _INTERVALS},
     }
 

@@ -95,11 +95,8 @@ def _of_frame(result: FrameResult, whole: FrameResult | BuildingResult) -> dict[
     with unwarned(Warning):
         period = float(modes(whole.structure, 1).period[0]) if parts.mass > 0.0 else None
     ends = result.moment_from[pictures], result.moment_to[pictures]
-    shears = [
-        np.maximum(*(np.abs(one.shear(ends[0][:, i], ends[1][:, i], end)) for end in (0.0, 1.0)))
-        for i, one in enumerate(frame.geometry.values())
-    ]
-    forces = (result.member_axial[pictures], *ends, np.column_stack(shears))
+    shears = np.abs(result.end_shear[pictures]).max(axis=2)
+    forces = (result.member_axial[pictures], *ends, shears)
     return {
         "status": result.summary["status"],
         "dynamic": result.dynamic,
