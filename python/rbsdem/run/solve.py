@@ -202,7 +202,7 @@ def _initial_state(
                     f"initial: {name!r} needs joints that open; give the column axial_spring"
                 )
             raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(parts)}")
-        array = _arguments.finite_vector(np.atleast_1d(values), f"initial: {name}")
+        array = _arguments.finite_vector(values, f"initial: {name}", shape="1 or m")
         if array.shape != (n,):
             raise InputError(f"initial: {name} has {array.size} values for n = {n} joints")
         parts[name] = array

@@ -48,6 +48,7 @@ from rbsdem.section.grid import (
     loads_of_beams,
     loads_of_nodes,
     spans_of_walls,
+    told_of_small,
 )
 from rbsdem.section.infill import INFILL_NOTE, Infill, InfilledBay
 from rbsdem.section.parameters import VERSION
@@ -618,9 +619,15 @@ class Frame:
         given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
         for node in given:
             _arguments.instance(node, "frame: nodes", FrameNode)
-        dead = grid.floors(more.pop("beam_load", 0.0), "beam_load")
-        dead = dead + grid.floors(dead_load, "dead_load")
-        live = grid.floors(live_load, "live_load")
+        stated = {
+            "beam_load": more.pop("beam_load", 0.0), "dead_load": dead_load, "live_load": live_load
+        }  # fmt: skip
+        loads = {name: grid.floors(load, name) for name, load in stated.items()}
+        if self_weight is True or sum(map(np.any, loads.values())) > 1:
+            # Of one alone the solver tells.
+            for name, load in loads.items():
+                told_of_small(f"frame: {name}", load, "N/m", "10 kN/m is 10e3")
+        dead, live = loads["beam_load"] + loads["dead_load"], loads["live_load"]
         if live.shape[1] > 1:
             raise InputError("frame: live_load is one for each floor; give bays to dead_load")
         drawing = FrameDrawing(

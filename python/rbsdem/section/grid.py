@@ -292,9 +292,7 @@ class Grid:
 
     def floors(self, loads: Any, name: str) -> Array:
         """Return a value for each floor and bay, shape (storeys, bays), or (storeys, 1)."""
-        values = loads_of_beams(loads, name, len(self.storeys), len(self.bays))
-        told_of_small(f"frame: {name}", values, "N/m", "10 kN/m is 10e3")
-        return values
+        return loads_of_beams(loads, name, len(self.storeys), len(self.bays))
 
     def loads(self, drawing: FrameDrawing) -> dict[str, Any]:
         """Return loads of beams, loads of nodes and masses of floors, as arguments of a frame."""
