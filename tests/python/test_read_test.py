@@ -334,3 +334,21 @@ def test_units_of_a_history_are_given_as_of_a_test(tmp_path):
             rbsdem.peer.read_peer(path, units=units)
     with pytest.raises(InputError, match="furlong"):
         rbsdem.peer.read_peer(path, units=("furlong", "kN"))
+
+
+def test_units_that_a_line_states_and_tons_beside_inches(tmp_path):
+    """A unit beside another one above the rows is a slip, and tons are of two kinds."""
+    path = write(tmp_path / "t.csv", "Units: kip in\nt,d,f\n", ",", point)
+    with pytest.raises(InputError, match=r"'Units: kip in' is above .* displacement is read in mm"):
+        read_test(path, units=("mm", "kN"), **NAMED)
+    path = write(tmp_path / "t.csv", "Units: kN, mm\nt,d,f\n", ",", point)
+    read_test(path, units=("mm", "kN"), **NAMED)
+    path = write(tmp_path / "t.csv", "t,d (in),f (ton)\n", ",", point)
+    with pytest.raises(InputError, match=r"'ton' beside inches may be 2000 lbf or the weight of"):
+        read_test(path, **NAMED)
+
+
+def test_names_of_channels_below_units_are_no_names(tmp_path):
+    head = "t,d,f\ns,mm,kN\nCH001,CH002,CH003\n"
+    path = write(tmp_path / "t.csv", head, ",", point)
+    np.testing.assert_allclose(read_test(path, **NAMED).displacement, D, rtol=1e-5, atol=1e-9)

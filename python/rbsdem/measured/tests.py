@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -370,6 +371,9 @@ _QUANTITIES = ("displacement", "force")
 #: No names of what is looked for: the force is that along the displacement.
 _NOT = {"displacement": ("time",), "force": ("time", "axial", "normal")}
 
+#: A line above the rows that states units.
+_UNIT_LINE = re.compile(r"\W*(?:unit|unidad|einheit|birim)\w*\s*:", re.IGNORECASE)
+
 # Plausible sizes of the largest values of a test of a column.
 _PLAUSIBLE = {"displacement": (5e-4, 1.5, "m"), "force": (500.0, 5e7, "N")}
 _LENGTHS, _SMALLEST_LOAD = (0.1, 30.0), 3000.0
@@ -529,6 +533,7 @@ def read_test(
     if zero:
         d, f = d - d[0], f - f[0]
     if checks:
+        _check_stated(given, table)
         _check_units(length, axial_load)
         _check_sizes(d, f, given, length, where, structure)
         _check_offset(d, f, zero, where)
@@ -658,6 +663,25 @@ def _units(given: object, chosen: tuple[int, int], table: NumberTable) -> tuple[
             )
         units.append(known[unit.lower()])
     return units[0], units[1]
+
+
+def _check_stated(units: tuple[str, str], table: NumberTable) -> None:
+    """Refuse units beside others that a line above states, and tons that may be of two kinds."""
+    for line in table.head:
+        words = {word.lower() for word in re.findall(r"\w+", line.partition(":")[2])}
+        for unit, quantity in zip(units, _QUANTITIES, strict=True):
+            known = _UNITS[quantity]
+            stated = {known[name] for name in known if name.lower() in words}
+            if _UNIT_LINE.match(line) and stated and known[unit] not in stated:
+                raise InputError(
+                    f"{table.source}: {line.strip()[:60]!r} is above the rows, and the {quantity} "
+                    f"is read in {unit}; correct units=, or say checks=False"
+                )
+    if units[0].startswith("in") and units[1] in ("t", "ton", "tonf"):
+        raise InputError(
+            f"{table.source}: {units[1]!r} beside inches may be 2000 lbf or the weight of 1000 kg; "
+            "say units=('in', 'tf') for the second, or give force in kip, or say checks=False"
+        )
 
 
 def _check_units(length: float | None, axial_load: float | None) -> None:
