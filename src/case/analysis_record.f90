@@ -17,6 +17,8 @@ module rbs_case_analysis_record
    type(bound_type), parameter :: possible = bound_type(1.0e-13_wp, 0.1_wp)
    !> Range of the spectral radius at infinite frequency.
    type(bound_type), parameter :: radius = bound_type(0.0_wp, 1.0_wp)
+   type(bound_type), parameter :: drift = &
+      bound_type(0.0_wp, 1.0_wp, least_open=.true., most_open=.true., reason='(10 per cent is 0.1)')
 
    !> How the case is solved.
    type, extends(visited_record) :: analysis_record
@@ -72,7 +74,7 @@ contains
                  'in energy norm; without it 1e-6', optional=.true.)
       call v%key('rho_infinity', self%rho_infinity, '', radius, 'hht, generalised_alpha: spectral radius '// &
                  'at infinite frequency; without it 0.8', optional=.true.)
-      call v%key('collapse_drift', self%collapse_drift, '', above_zero, 'drift at which the structure '// &
+      call v%key('collapse_drift', self%collapse_drift, '', drift, 'drift at which the structure '// &
                  'counts as collapsed, of a storey of a frame or of the top', optional=.true.)
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
