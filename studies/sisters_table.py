@@ -17,29 +17,35 @@ import numpy as np
 import spread_table
 
 from rbsdem import peer
-from rbsdem.run.bands import factored_force, scatter_of_tests
-from rbsdem.run.sisters import Learned, Loop, learn_from, told
+from rbsdem.run.bands import distance, numbers, path_force, scatter_of_tests
+from rbsdem.run.sisters import Loop, Told, learn, told
 
 #: How many tests are given, the nearest first.
-GIVEN = (0, 1, 3, 99)
+GIVEN = {0: "none", 1: "the nearest", 2: "two", 3: "three", 99: "all others"}
 
 
-def _told(number: int) -> tuple[np.ndarray, np.ndarray]:
-    case = fit_model._cases[number]
+def _told(number: int) -> Told:
+    target = fit_model._cases[number].target
     column = spread_table._column(number, None)
-    loop = Loop(column, case.target.displacement, case.target.force)
-    return told(loop, scatter_of_tests())
+    return told(Loop(column, target.displacement, target.force))
 
 
-def _score(task: tuple[int, Learned | None]) -> tuple[float, float, float]:
-    """Return nrmse, share of points in the band, its width."""
-    number, learned = task
+def _score(task: tuple[int, list[Told]]) -> tuple[float, ...]:
+    """Return nrmse, share of points in the band, its width, and which intervals hold."""
+    number, given = task
     case, column = fit_model._cases[number], spread_table._column(number, None)
-    d = case.target.displacement
+    d, test = case.target.displacement, case.target.force
+    learned = learn(column, d, given) if given else None
     band = peer.band(column, d, samples=8, scatter=scatter_of_tests(), learned=learned)
-    logs = np.zeros(3) if learned is None else learned.logs
-    error = case.target.error(factored_force(column, d, logs))
-    return float(np.sqrt(np.mean(error**2))), band.holds(case.target.force), band.width
+    error = case.target.error(path_force(column, d) if learned is None else learned.force(d))
+    measured = numbers(d, test, case.specimen.length)
+    held = [
+        interval.holds(measured[name])
+        for name, interval in (
+            ("peak", band.peak_force), ("energy", band.energy), ("drift", band.drift_at_loss)
+        )
+    ]  # fmt: skip
+    return float(np.sqrt(np.mean(error**2))), band.holds(test), band.width, *map(float, held)
 
 
 def main() -> None:
@@ -52,35 +58,32 @@ def main() -> None:
     specimens = [case.specimen for case in fit_model._cases]
     series = np.array([specimen.series for specimen in specimens])
     members = [i for i, name in enumerate(series) if np.sum(series == name) > 1]
-    near = {}
-    for i in members:
-        s = specimens[i]
-        others = {specimens[j]: j for j in members if j != i and series[j] == series[i]}
-        hinge = peer.draw(s).section, s.length, s.axial_load
-        found = peer.nearest(*hinge, list(others), n=len(others))
-        near[i] = [others[one.specimen] for one in found]
-    print("| tests given | nrmse: mean, mean of series means | better | points | width |")
-    print("| --- | ---: | ---: | ---: | ---: |")
+    print("| tests given | nrmse: mean, of series means | better | points | width "
+          "| peak, work, drift held |")  # fmt: skip
+    print("| --- " + "| ---: " * 5 + "|")
     source = (given.folder,)
     with ProcessPoolExecutor(given.jobs, initializer=spread_table._begin, initargs=source) as pool:
         says = dict(zip(members, pool.map(_told, members, chunksize=4), strict=True))
+        near = {
+            i: sorted(
+                (j for j in members if j != i and series[j] == series[i]),
+                key=lambda j, i=i: distance(says[i].features, says[j].features),
+            )
+            for i in members
+        }
         alone = np.empty(0)
-        for number in GIVEN:
-            learned = [
-                learn_from([says[j] for j in near[i][:number]], scatter_of_tests())
-                if number
-                else None
-                for i in members
-            ]
-            tasks = list(zip(members, learned, strict=True))
-            errors, held, width = np.array(list(pool.map(_score, tasks, chunksize=4))).T
+        for number, name in GIVEN.items():
+            tasks = [(i, [says[j] for j in near[i][:number]]) for i in members]
+            rows = np.array(list(pool.map(_score, tasks, chunksize=4)))
+            errors, *rest = rows.T
             alone = alone if alone.size else errors
             own = series[members]
             means = [errors[own == name].mean() for name in sorted(set(own.tolist()))]
-            name = {0: "none", 1: "the nearest", 3: "three", 99: "all others"}[number]
+            held, width, *intervals = (part.mean() for part in rest)
             print(
                 f"| {name} | {errors.mean():.4f}, {np.mean(means):.4f} "
-                f"| {np.mean(errors < alone):.2f} | {held.mean():.2f} | {width.mean():.2f} |",
+                f"| {np.mean(errors < alone):.2f} | {held:.2f} | {width:.2f} "
+                f"| {', '.join(f'{share:.2f}' for share in intervals)} |",
                 flush=True,
             )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,51 +12,61 @@ from samples import SECTION, write_history, write_table
 import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
-from rbsdem.run.bands import Scatter, factored_force, scatter_of_tests
+from rbsdem.run.bands import distance, features_of, path_force, scatter_of_tests
 from rbsdem.run.protocol import protocol
-from rbsdem.run.sisters import Loop, learn
+from rbsdem.run.sisters import Loop, Told, learn, told
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
-PATH = 1.6 * protocol([0.005, 0.01, 0.02, 0.03], cycles=2)
+PATH = 1.6 * protocol([0.005, 0.015, 0.03], cycles=1)
 COLUMN = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
+FORCE = path_force(COLUMN, PATH)
 
 
-def loop(*logs: float) -> Loop:
-    return Loop(COLUMN, PATH, factored_force(COLUMN, PATH, np.array(logs)))
+def says(force: np.ndarray) -> Told:
+    return told(Loop(COLUMN, PATH, force))
 
 
 def test_a_test_that_the_model_follows_moves_nothing() -> None:
-    found = learn([loop(0.0, 0.0, 0.0)], scatter_of_tests())
-    np.testing.assert_allclose(found.logs, 0.0, atol=1e-12)
-    between = [scatter_of_tests().strength[0], scatter_of_tests().stiffness[0]]
-    assert (found.left[:2] < between).all()
+    found = learn(COLUMN, PATH, [says(FORCE)])
+    np.testing.assert_allclose(found.force(PATH), FORCE, rtol=1e-9)
+    assert found.strength == 1.0
+    assert 0.0 < found.left < 1.0
 
 
-def test_a_laboratory_is_believed_by_the_share_of_its_scatter() -> None:
-    """Of k tests that all are stronger by x: x k t^2/(k t^2 + s^2), as loops are all but exact."""
-    scatter = replace(scatter_of_tests(), strength=(0.08, 0.06), stiffness=(1e-6,) * 2)
-    scatter = replace(scatter, degradation=(1e-6,) * 2)
-    for number in (1, 3):
-        found = learn([loop(0.1, 0.0, 0.0)] * number, scatter)
-        share = number * 0.08**2 / (number * 0.08**2 + 0.06**2 + 0.02**2 / 0.5)
-        assert found.logs[0] == pytest.approx(0.1 * share, rel=0.1)
-        left = (0.08**-2 + number / (0.06**2 + 0.02**2 / 0.5)) ** -0.5
-        assert found.left[0] == pytest.approx(left, rel=0.1)
+def test_what_the_rig_adds_is_found() -> None:
+    """The loop is; of its causes friction, as strength may stand for second-order force."""
+    rig = 0.05 * np.sign(np.gradient(PATH)) * np.abs(FORCE).max() + 0.3 * 1.2e6 / 1.6 * PATH
+    found = learn(COLUMN, PATH, [says(FORCE + rig)] * 3)
+    assert found.friction == pytest.approx(0.05, rel=0.2)
+    assert found.second_order > 0.1
+    error = found.force(PATH) - FORCE - rig
+    assert np.sqrt(np.mean(error**2)) < 0.2 * np.sqrt(np.mean(rig**2))
 
 
-def test_without_scatter_nothing_is_learned() -> None:
-    none = Scatter(
-        strength=(0.0, 0.1), stiffness=(0.0, 0.1), degradation=(0.0, 0.1), shape=0.05,
-        force=(1.0,) * 3, peak=((0.9, 1.1),) * 3, energy=((0.9, 1.1),) * 3,
-        drift=((0.9, 1.1),) * 3,
-    )  # fmt: skip
-    np.testing.assert_allclose(learn([loop(0.1, 0.2, 0.3)], none).logs, 0.0, atol=1e-9)
+def test_one_number_in_closed_form() -> None:
+    """Of a strength alone, known to the error e: s^2 c/(s^2 + e^2) of what a test is off."""
+    size, error, x = math.hypot(*scatter_of_tests().strength), 0.05, 0.1
+    information, pull = np.zeros((15, 15)), np.zeros(15)
+    information[0, 0], pull[0] = error**-2, x * error**-2
+    own = features_of(SECTION, 1.6, 1.2e6)
+    for apart in (0.0, 1.0, 30.0):
+        features = (own[0] + 0.15 * apart, *own[1:])
+        assert distance(own, features) == pytest.approx(apart)
+        shared = 0.5 + 0.5 * math.exp(-apart)
+        found = learn(COLUMN, PATH, [Told(features, information, pull)])
+        share = size**2 * shared / (size**2 + error**2)
+        assert math.log(found.strength) == pytest.approx(x * share, rel=1e-9)
+    # Two tests that are one count once, but for their errors.
+    found = learn(COLUMN, PATH, [Told(own, information, pull)] * 2)
+    share = size**2 / (size**2 + error**2 / 2)
+    assert math.log(found.strength) == pytest.approx(x * share, rel=1e-9)
 
 
 def test_the_band_moves_and_narrows() -> None:
-    learned = learn([loop(0.1, 0.0, 0.0)] * 3, scatter_of_tests())
-    before, after = peer.band(COLUMN, PATH), peer.band(COLUMN, PATH, learned=learned)
-    np.testing.assert_allclose(after.force, factored_force(COLUMN, PATH, learned.logs))
+    learned = learn(COLUMN, PATH, [says(1.1 * FORCE)] * 3)
+    before = peer.band(COLUMN, PATH, samples=8)
+    after = peer.band(COLUMN, PATH, samples=8, learned=learned)
+    np.testing.assert_allclose(after.force, learned.force(PATH))
     assert after.width < before.width
     assert after.peak_force.value > before.peak_force.value
     ends = [(band.peak_force.upper / band.peak_force.lower) for band in (before, after)]

@@ -30,19 +30,17 @@ from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
 from rbsdem.run.bands import (
     Band,
-    factored_force,
+    distance,
     features_of,
     has_bands,
     numbers,
-    scatter_of_tests,
 )
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.response import cyclic
-from rbsdem.run.sisters import Learned, Loop, learn
+from rbsdem.run.sisters import Learned, Loop, Told, learn, told
 from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.criteria import WATCHED
-from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import parameters
 
 Model: TypeAlias = str | Callable[[Specimen], Column]
@@ -58,10 +56,6 @@ _OF_SPECIMEN = (
 _INTERVALS = {"peak_force": "peak", "energy": "energy", "drift_at_loss": "drift"}
 #: Limit states that have a column.
 _STATES = (*WATCHED, "strength_loss", "axial_failure")
-
-#: Differences that count as 1: of the axial load ratio, and of the logarithms of the shear span
-#: over the depth, the concrete strength, and the mechanical ratios of bars and ties.
-_SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,7 +244,7 @@ def predict(
         raise InputError(f"given: tests move predictions of 'layered' alone, not of {name!r}")
     if sisters and limit_states:
         raise InputError("limit_states = True: they are those of the drawing; leave out given")
-    loops = {sister: _loop(sister, options) for sister in sisters}
+    says = {sister: _told(sister, options) for sister in sisters}
     path = None if displacement is None else _path(displacement)
     others: Sequence[Specimen | Prediction]
     others = read_specimens(near).with_history() if isinstance(near, _PATH) else list(near)
@@ -262,10 +256,10 @@ def predict(
         if column is None or row[0].status == "failed":
             return row[0]
         changes: dict[str, Any] = {}
-        own = [loop for sister, loop in loops.items() if sister != specimen]
-        learned = learn(own, scatter_of_tests()) if own else None
+        others_say = [what for sister, what in says.items() if sister != specimen]
+        learned = learn(column, row[0].displacement, others_say) if others_say else None
         if learned is not None:
-            changes = _moved(row[0], column, learned)
+            changes = _moved(row[0], learned)
         if bands:
             with unwarned():
                 changes["band"] = band_of(
@@ -292,20 +286,20 @@ def predict(
 _PATH = (str, os.PathLike)
 
 
-def _loop(sister: Specimen, options: dict[str, Any]) -> Loop:
-    """Return a given test with its column."""
+def _told(sister: Specimen, options: dict[str, Any]) -> Told:
+    """Return what a given test says."""
     try:
         test = sister.test()
         with unwarned():
             column = column_of(sister, "layered", **options)
     except RbsdemError as error:
         raise InputError(f"given: {sister.name}: {error}") from error
-    return Loop(column, test.displacement, test.force)
+    return told(Loop(column, test.displacement, test.force))
 
 
-def _moved(row: Prediction, column: LayeredColumn, learned: Learned) -> dict[str, Any]:
+def _moved(row: Prediction, learned: Learned) -> dict[str, Any]:
     """Return what changes in a row by what tests of the laboratory say."""
-    force = factored_force(column, row.displacement, learned.logs)
+    force = learned.force(row.displacement)
     tests = "1 test" if learned.tests == 1 else f"{learned.tests} tests"
     changes: dict[str, Any] = {"force": force, "model": f"{row.model}, {tests} given"}
     if row.comparison is not None:
@@ -542,8 +536,7 @@ def nearest(
             there = _features(other)
         except InputError:
             continue
-        apart = [(a - b) / scale for a, b, scale in zip(features, there, _SCALES, strict=True)]
-        neighbours.append(Neighbour(other, math.hypot(*apart), row))
+        neighbours.append(Neighbour(other, distance(features, there), row))
     return tuple(sorted(neighbours, key=lambda neighbour: neighbour.distance)[:n])
 
 

@@ -55,6 +55,9 @@ _LEAST_WORK = 0.15
 #: Below this a ratio of bars or ties is none.
 _NONE = 1e-3
 
+#: Differences of `features_of` that count as 1.
+_SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
+
 #: Parameters of degradation, and whether more of them is more of it.
 _FASTER = ("fatigue", "wear", "shear_decay", "core_softening", "cover_softening")
 _DEGRADATION = dict.fromkeys(_FASTER, 1) | {"shear_endurance": -1}
@@ -116,15 +119,18 @@ def _frozen(value: Any) -> Any:
 
 
 class HasLearned(Protocol):
-    """Factors of a laboratory, as `rbsdem.run.sisters.Learned` has them."""
+    """A column as tests of its laboratory make it, as `rbsdem.run.sisters.Learned` has it."""
 
     @property
-    def logs(self) -> Array:
-        """Logarithms of its factors of strength, stiffness and degradation, shape (3,)."""
+    def column(self) -> LayeredColumn:
+        """The column with the numbers of the laboratory."""
 
     @property
-    def left(self) -> Array:
-        """Standard deviations of them that are left, shape (3,)."""
+    def left(self) -> float:
+        """What the tests leave of the scatter of the loop."""
+
+    def force(self, displacement: Array) -> Array:
+        """Return the force that the laboratory will measure along a path [N]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,6 +292,24 @@ def features_of(section: Section, height: float, axial_load: float) -> tuple[flo
     return axial, *map(math.log, (span, strength / 30e6, max(bars, _NONE), max(ties, _NONE)))
 
 
+def distance(features: Sequence[float], others: Sequence[float]) -> float:
+    """Return how far two columns are apart in what `features_of` has.
+
+    Parameters
+    ----------
+    features, others : sequence of float
+        Of both. 1 is a difference of 0.15 in the axial load ratio, or of 0.4 in the logarithm of
+        the shear span over the depth, 0.35 of the concrete strength, 0.4 and 0.6 of the mechanical
+        ratios of bars and ties.
+    """
+    return math.dist(
+        *(
+            [x / scale for x, scale in zip(each, _SCALES, strict=True)]
+            for each in (features, others)
+        )
+    )
+
+
 def has_bands(version: str) -> bool:
     """Return whether the scatter of tests about a version of the parameters is known."""
     return version == VERSION
@@ -353,18 +377,20 @@ def band(
         raise InputError("band: the displacement does not change; give a path")
     if warnings:
         warn(f"band: {'; '.join(warnings)}")
-    centre, narrower = np.zeros(3), (1.0, 1.0, 1.0)
+    base = column if learned is None else learned.column
+    force, sampled, left = path_force(base, d), sample(base, d, scatter, number), 1.0
     if learned is not None:
-        centre, (scatter, narrower) = learned.logs, _narrowed(scatter, learned.left)
-    force = path_force(column, d) if learned is None else factored_force(column, d, centre)
-    sampled = sample(column, d, scatter, number, centre.tolist())
+        sampled -= force
+        force, left = learned.force(d), learned.left
+        sampled += force
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
     features = Features(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
     wider, *powers = _beyond(column, scatter)
-    powers = [power * by for power, by in zip(powers, narrower, strict=True)]
-    widen = wider * between(scatter.force, features)
+    # Single numbers are known less well than the loop: judged by `studies/sisters_table.py`.
+    powers = [math.sqrt(left) * by for by in powers]
+    widen = left * wider * between(scatter.force, features)
     values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
     return Band(
@@ -386,20 +412,6 @@ def band(
     )
 
 
-def _narrowed(scatter: Scatter, left: Array) -> tuple[Scatter, tuple[float, float, float]]:
-    """Return the scatter with what is left of a laboratory's, and the powers of the intervals."""
-    parts = (scatter.strength, scatter.stiffness, scatter.degradation)
-    known = [(float(size), within) for size, (_, within) in zip(left, parts, strict=True)]
-    shares = [
-        math.hypot(*after) / math.hypot(*before) if any(before) else 1.0
-        for before, after in zip(parts, known, strict=True)
-    ]
-    strength, stiffness, degradation = known
-    moved = replace(scatter, strength=strength, stiffness=stiffness, degradation=degradation)
-    # Of largest force, work, drift at loss.
-    return moved, (shares[0], sum(shares) / 3.0, shares[2])
-
-
 def _beyond(column: LayeredColumn, scatter: Scatter) -> tuple[float, ...]:
     """Return by what bands and intervals are wider than inside the range of the tests."""
     if not column.warnings:
@@ -408,30 +420,11 @@ def _beyond(column: LayeredColumn, scatter: Scatter) -> tuple[float, ...]:
     return scatter.small if small else scatter.outside
 
 
-def factored_force(column: LayeredColumn, displacement: Array, logs: Array) -> Array:
-    """Return the force of a column whose strength, stiffness and degradation have factors [N].
-
-    Parameters
-    ----------
-    column : LayeredColumn
-        The column.
-    displacement : ndarray, shape (m,)
-        The path [m].
-    logs : ndarray, shape (3,)
-        Logarithms of the factors.
-    """
-    strength, stiffness, degradation = np.exp(logs).tolist()
-    other = _degraded(column, degradation)
-    # A column that is softer by a factor is where the other is at a smaller displacement.
-    return np.asarray(strength * path_force(other, displacement * stiffness))
-
-
 def sample(
     column: LayeredColumn,
     displacement: Array,
     scatter: Scatter,
     number: int,
-    centre: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> Array:
     """Return the forces of samples of strength, stiffness and degradation, shape (number, m) [N].
 
@@ -445,8 +438,6 @@ def sample(
         Of a new laboratory: both standard deviations are in it.
     number : int
         How many.
-    centre : sequence of float, optional
-        Logarithms of the three factors, about which the samples are.
     """
     drawing = column._drawing
     for name, made in drawing.made.items():
@@ -458,8 +449,9 @@ def sample(
     sizes = [math.hypot(*two) for two in (scatter.strength, scatter.stiffness, scatter.degradation)]
     rows = np.empty((number, displacement.size))
     for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
-        logs = np.array(centre) + np.array(sizes) * np.array(point)
-        row[:] = factored_force(column, displacement, logs)
+        strength, stiffness, degradation = np.exp(np.array(sizes) * np.array(point)).tolist()
+        # A column that is softer by a factor is where the other is at a smaller displacement.
+        row[:] = strength * path_force(_degraded(column, degradation), displacement * stiffness)
     return rows
 
 
@@ -573,11 +565,23 @@ def _interval(
     return Interval(value + (lower - 1.0) * size, value, value + (upper - 1.0) * size)
 
 
-def _degraded(column: LayeredColumn, factor: float) -> Column:
-    """Return the column with faster degradation; values beyond its limits are cut, not refused."""
+def _degraded(column: LayeredColumn, factor: float) -> LayeredColumn:
+    """Return the column with faster degradation."""
+    now = column._drawing.parameters.values
+    return changed_column(column, {name: now[name] * factor**w for name, w in _DEGRADATION.items()})
+
+
+def changed_column(column: LayeredColumn, values: dict[str, float]) -> LayeredColumn:
+    """Return a column with other parameters; values beyond its limits are cut, not refused.
+
+    Parameters
+    ----------
+    column : LayeredColumn
+        The column.
+    values : dict of str to float
+        Parameters of its model.
+    """
     drawing = column._drawing
-    now = drawing.parameters.values
-    values = {name: now[name] * factor**way for name, way in _DEGRADATION.items()}
     other = replace(drawing, parameters=drawing.parameters.with_values(**values))
     return replace(column, drawing=other, **other.made)
 

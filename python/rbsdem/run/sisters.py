@@ -1,30 +1,43 @@
-"""Columns of a laboratory predicted with its other tests: a Bayes step with the scatter of bands.
+"""Columns of a laboratory predicted with its other tests: a Bayes step with the scatter of tests.
 
-Tests of one series (sisters) share a laboratory: its steel, its concrete, its rig. `Scatter` has
-how far the strength, the stiffness and the degradation of a laboratory are off, and how far those
-of a test in it. Each given test is followed along its path; the loop, linear in the logarithms of
-three factors, tells them with some information, and the posterior mean of the laboratory moves the
-prediction of another column. The scatter that remains is smaller, and so the band is narrower.
+Tests of one series (sisters) share a laboratory: its steel, its concrete, its rig. What may differ
+from the model is the strength, the fitted numbers of the model, and two things of the rig: a force
+against the motion, which makes loops wider, and the share of the axial load's second-order force
+that the record has or lacks. Half of the variance of each is the laboratory's; the other half two
+columns have in common the more, the more alike they are. Each given test is followed along its
+path; linear in all of these, they give the posterior mean for another column, and what is left of
+the scatter makes its band narrower.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rbsdem._types import Array
-from rbsdem.run.bands import Scatter, factored_force
+from rbsdem.run.bands import (
+    changed_column,
+    distance,
+    features_of,
+    path_force,
+    scatter_of_tests,
+)
 from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.parameters import table
 
-#: Error of a loop whose factors are right, over its largest force, for all of the loop as one
+#: Standard deviations: of the fitted numbers, in spreads of their priors; of the force against the
+#: motion, over the largest; of the share of the second-order force.
+_NUMBERS, _FRICTION, _SECOND_ORDER = 0.4, 0.07, 0.4
+#: Error of a loop whose numbers are right, over its largest force, for all of the loop as one
 #: number.
 _ERROR = 0.02
-#: Gauss-Newton steps, and the difference for slopes in standard deviations.
-_STEPS, _STEP = 3, 0.5
-#: Farthest that a factor goes, in standard deviations.
-_FARTHEST = 3.0
+#: Error of the shape of loops, that no number explains, likewise; it is in bands whatever is known.
+_SHAPE = 0.12
+#: Difference for slopes, in spreads; farthest that a number goes, in standard deviations.
+_STEP, _FARTHEST = 0.5, 3.0
 
 
 @dataclass(frozen=True)
@@ -37,95 +50,168 @@ class Loop:
 
 
 @dataclass(frozen=True)
+class Told:
+    """What a given test says.
+
+    Attributes
+    ----------
+    features : tuple of float
+        Properties by which its column is compared, see `rbsdem.run.bands.features_of`.
+    information : ndarray, shape (k, k)
+        About the logarithm of the strength, the fitted numbers, friction and second-order force.
+    pull : ndarray, shape (k,)
+        The information times their values.
+    """
+
+    features: tuple[float, ...]
+    information: Array
+    pull: Array
+
+
+@dataclass(frozen=True)
 class Learned:
-    """Factors of a laboratory, learned from its tests.
+    """A column as the tests of its laboratory make it.
 
     Attributes
     ----------
     tests : int
         Number of given tests.
-    logs : ndarray, shape (3,)
-        Logarithms of its factors of strength, stiffness and degradation.
-    left : ndarray, shape (3,)
-        Standard deviations of them that are left.
+    column : LayeredColumn
+        The column with the numbers of the laboratory.
+    strength : float
+        Factor of its force.
+    friction : float
+        Force against the motion of the top, over the largest force.
+    second_order : float
+        Force in proportion to the displacement, over P/L: axial load over height.
+    left : float
+        What the tests leave of the scatter of the loop.
     """
 
     tests: int
-    logs: Array
-    left: Array
+    column: LayeredColumn
+    strength: float
+    friction: float
+    second_order: float
+    left: float
+
+    def force(self, displacement: Array) -> Array:
+        """Return the force that the laboratory will measure along a path [N].
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (m,)
+            The path [m].
+        """
+        force = self.strength * path_force(self.column, displacement)
+        by_friction, by_load = _of_rig(self.column, displacement, force)
+        return np.asarray(force + self.friction * by_friction + self.second_order * by_load)
 
 
-def learn(loops: Sequence[Loop], scatter: Scatter) -> Learned:
-    """Return what tests of a laboratory say of it.
+def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> Learned:
+    """Return a column as tests of its laboratory make it.
 
     Parameters
     ----------
-    loops : sequence of Loop
-        The tests.
-    scatter : Scatter
-        Scatter from laboratory to laboratory, and within one.
+    column : LayeredColumn
+        The column.
+    displacement : ndarray, shape (m,)
+        The path along which it is to be predicted [m].
+    given : sequence of Told
+        What each test says.
 
     Notes
     -----
-    Of test j with the information A_j = J'J/e^2 about its factors x_j = u + v_j, v_j of the scatter
-    S within a laboratory, the laboratory has the information (1 + A_j S)^-1 A_j; T of laboratories
-    is the prior of u.
+    Of the numbers x_i of column i with standard deviations s the prior has the covariance
+    (1 + exp(-distance of i and j))/2 s^2. With A the information of the tests, b the pull, K the
+    prior of the tests and k that of them with the column, the mean is k (1 + A K)^-1 b.
     """
-    return learn_from([told(loop, scatter) for loop in loops], scatter)
+    sizes = _sizes()
+    features = _features(column)
+    variance = np.diag(sizes**2)
+
+    def alike(some: Sequence[tuple[float, ...]]) -> Array:
+        return np.array(
+            [[0.5 + 0.5 * math.exp(-distance(a, test.features)) for test in given] for a in some]
+        )
+
+    number, size = len(given), sizes.size
+    prior = np.kron(alike([test.features for test in given]), variance)
+    with_column = np.kron(alike([features]), variance)
+    blocks = np.zeros((number, size, number, size))
+    for i, test in enumerate(given):
+        blocks[i, :, i, :] = test.information
+    information = blocks.reshape(prior.shape)
+    pull = np.concatenate([test.pull for test in given])
+    known = np.column_stack([pull, information @ with_column.T])
+    known = with_column @ np.linalg.solve(np.eye(len(prior)) + information @ prior, known)
+    places = np.clip(known[:, 0], -_FARTHEST * sizes, _FARTHEST * sizes).tolist()
+    force = path_force(column, displacement)
+    slopes = _slopes(column, displacement, force)
+    about = slopes.T @ (_lengths(displacement)[:, None] * slopes)
+    before = float(np.trace(about @ variance)) + (_SHAPE * float(np.max(np.abs(force)))) ** 2
+    left = 1.0 - float(np.trace(about @ known[:, 1:])) / before
+    return Learned(
+        tests=number,
+        column=_moved(column, places[1:-2]),
+        strength=math.exp(places[0]),
+        friction=places[-2],
+        second_order=places[-1],
+        left=math.sqrt(left),
+    )
 
 
-def told(loop: Loop, scatter: Scatter) -> tuple[Array, Array]:
-    """Return the information of a loop about the logarithms of its factors, and times them.
+def told(loop: Loop) -> Told:
+    """Return what a test says.
 
     Parameters
     ----------
     loop : Loop
-        A test.
-    scatter : Scatter
-        Scatter from laboratory to laboratory, and within one.
+        The test.
     """
-    sizes = np.array([scatter.strength, scatter.stiffness, scatter.degradation])
-    return _information(loop, np.maximum(np.hypot(*sizes.T), 1e-6))
+    column, d, scale = loop.column, loop.displacement, float(np.max(np.abs(loop.force)))
+    force = path_force(column, d)
+    slopes = _slopes(column, d, force)
+    weighted = slopes.T * (_lengths(d) / (scale * _ERROR) ** 2)
+    return Told(_features(column), weighted @ slopes, weighted @ (loop.force - force))
 
 
-def learn_from(tests: Sequence[tuple[Array, Array]], scatter: Scatter) -> Learned:
-    """Return what tests say of their laboratory, each as `told` has it.
-
-    Parameters
-    ----------
-    tests : sequence of (ndarray, ndarray)
-        Information about the three logarithms, shape (3, 3), and times them, shape (3,).
-    scatter : Scatter
-        Scatter from laboratory to laboratory, and within one.
-    """
-    between, within = np.array([scatter.strength, scatter.stiffness, scatter.degradation]).T
-    # Without any scatter nothing can be learned.
-    information = np.diag(1.0 / np.maximum(between, 1e-6) ** 2)
-    weighted = np.zeros(3)
-    for own, pull in tests:
-        share = np.linalg.inv(np.eye(3) + own @ np.diag(within**2))
-        information = information + share @ own
-        weighted = weighted + share @ pull
-    covariance = np.linalg.inv(information)
-    return Learned(len(tests), covariance @ weighted, np.sqrt(np.diag(covariance)))
+def _sizes() -> Array:
+    """Return the standard deviations: strength, fitted numbers, friction, second-order force."""
+    numbers = [_NUMBERS for row in table().values() if row.spread > 0]
+    strength = math.hypot(*scatter_of_tests().strength)
+    return np.array([strength, *numbers, _FRICTION, _SECOND_ORDER])
 
 
-def _information(loop: Loop, spread: Array) -> tuple[Array, Array]:
-    """Return the information of a loop about the logarithms of its factors, and times them."""
-    d, scale = loop.displacement, float(np.max(np.abs(loop.force)))
-    # Each part of the path counts by its length.
-    length = np.gradient(np.concatenate([[0.0], np.cumsum(np.abs(np.diff(d)))]))
-    weight = np.sqrt(np.maximum(length, 0.0) / length.sum()) / (scale * _ERROR)
-    logs = np.zeros(3)
-    for _ in range(_STEPS):
-        force = factored_force(loop.column, d, logs)
-        slopes = np.empty((d.size, 3))
-        for k, size in enumerate(spread):
-            moved = logs + _STEP * size * np.eye(3)[k]
-            slopes[:, k] = (factored_force(loop.column, d, moved) - force) / (_STEP * size)
-        slopes *= weight[:, None]
-        matrix, pull = slopes.T @ slopes, slopes.T @ (weight * (loop.force - force))
-        linear = matrix @ logs + pull
-        logs = np.linalg.solve(matrix + np.diag(spread**-2.0), linear)
-        logs = np.clip(logs, -_FARTHEST * spread, _FARTHEST * spread)
-    return matrix, linear
+def _slopes(column: LayeredColumn, displacement: Array, force: Array) -> Array:
+    """Return the changes of the force along a path by each of them, shape (m, k)."""
+    unit = _STEP * np.eye(sum(row.spread > 0 for row in table().values()))
+    moved = [path_force(_moved(column, places), displacement) for places in unit.tolist()]
+    by_numbers = [(other - force) / _STEP for other in moved]
+    return np.column_stack([force, *by_numbers, *_of_rig(column, displacement, force)])
+
+
+def _moved(column: LayeredColumn, places: Sequence[float]) -> LayeredColumn:
+    """Return a column whose fitted numbers are off by so many spreads of their priors."""
+    fitted = [row for row in table().values() if row.spread > 0]
+    now, values = column._drawing.parameters.values, {}
+    for row, place in zip(fitted, places, strict=True):
+        way = row.spread * place
+        values[row.name] = now[row.name] * math.exp(way) if row.prior > 0 else now[row.name] + way
+    return changed_column(column, values)
+
+
+def _of_rig(column: LayeredColumn, displacement: Array, force: Array) -> tuple[Array, Array]:
+    """Return friction as large as the largest force, and the second-order force, along a path."""
+    way = np.sign(np.gradient(displacement))
+    return way * np.max(np.abs(force)), column.axial_load / column.height * displacement
+
+
+def _lengths(displacement: Array) -> Array:
+    """Return the share of each row in the length of the path."""
+    length = np.gradient(np.concatenate([[0.0], np.cumsum(np.abs(np.diff(displacement)))]))
+    return np.asarray(np.maximum(length, 0.0) / length.sum())
+
+
+def _features(column: LayeredColumn) -> tuple[float, ...]:
+    return features_of(column._drawing.section, column.height, column._drawing.axial_load)
