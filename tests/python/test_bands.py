@@ -82,6 +82,19 @@ def test_an_energy_near_zero_has_a_width() -> None:
     assert energy.upper - energy.value == pytest.approx(0.5 * 0.15 * moved)
 
 
+def test_double_curvature_has_the_band_of_its_half() -> None:
+    """Twice the displacement and the work at the same force; its two hinges are alike."""
+    half = rbsdem.section.column(SECTION, 1.5, axial_load=700e3)
+    whole = rbsdem.section.column(SECTION, 3.0, axial_load=700e3, top="fixed")
+    path = protocol([0.005, 0.02], points=4)
+    one = rbsdem.peer.band(half, 1.5 * path, samples=8)
+    two = rbsdem.peer.band(whole, 3.0 * path, samples=8)
+    for name in ("lower", "force", "upper"):
+        np.testing.assert_allclose(getattr(two, name), getattr(one, name), rtol=1e-6, atol=1.0)
+    assert two.energy.upper == pytest.approx(2 * one.energy.upper, rel=1e-6)
+    assert two.drift_at_loss.lower == pytest.approx(one.drift_at_loss.lower, rel=1e-6)
+
+
 def test_intervals() -> None:
     found = rbsdem.peer.band(column(), PATH, scatter=NONE)
     assert found.peak_force.value == np.max(np.abs(found.force))

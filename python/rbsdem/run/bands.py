@@ -385,7 +385,7 @@ def band(
         sampled += force
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
-    features = Features(near, slender(column.height, column._drawing.section.depth))
+    features = Features(near, slender(column._drawing.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
     wider, *powers = _beyond(column, scatter)
     # Single numbers are known less well than the loop: judged by `studies/sisters_table.py`.
@@ -440,7 +440,7 @@ def sample(
         How many.
     """
     drawing = column._drawing
-    for name, made in drawing.made.items():
+    for name, made in drawing.fields_for(column.top).items():
         if getattr(column, name) != made:
             raise InputError(
                 f"band: {name} of this column is not that of its model, whose scatter is known; "
@@ -583,7 +583,7 @@ def changed_column(column: LayeredColumn, values: dict[str, float]) -> LayeredCo
     """
     drawing = column._drawing
     other = replace(drawing, parameters=drawing.parameters.with_values(**values))
-    return replace(column, drawing=other, **other.made)
+    return replace(column, drawing=other, **other.fields_for(column.top))
 
 
 def path_force(column: Column, displacement: Array) -> Array:
