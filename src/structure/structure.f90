@@ -111,9 +111,10 @@ module rbs_structure_structure
       !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
       !> Where it acts on the unknowns: those that have mass; momenta of the modes times sqrt(2 zeta omega),
-      !> whose products are the damping matrix (unknowns with mass, modes)
+      !> whose products are the damping matrix (unknowns with mass, modes); that itself where it takes fewer
+      !> numbers
       integer, allocatable :: massed(:)
-      real(wp), allocatable :: modal_momenta(:, :)
+      real(wp), allocatable :: modal_momenta(:, :), modal_matrix(:, :)
       !> Whether there is damping at all
       logical :: damped = .false.
       !> Number of axial forces that may do second-order work, and of numbers in the work array of

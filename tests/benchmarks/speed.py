@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 from benchmark import record_20_s
-from drawn_building import building, fibre_frame, least
+from drawn_building import building, fibre_frame, least, section
 from ensembles import predicted
 from rich import box
 from rich.console import Console
@@ -85,6 +85,15 @@ def wall_frame() -> rbsdem.Frame:
     return rbsdem.examples.house(6, 3, walls={2: wall})
 
 
+def in_plan() -> rbsdem.Building:
+    """Return a building of four storeys of four and three bays of drawn members."""
+    column, beam = section(0.4), section(0.5)
+    return rbsdem.Building.grid(
+        [3.2] * 4, [5.6] * 4, [5.0] * 3, columns=column, beams_x=beam, beams_y=beam,
+        floor_load=7e3, mass="from_loads", eccentricity=(0.05, 0.05), kinematics="pdelta",
+    )  # fmt: skip
+
+
 def runs() -> dict[str, Callable[[], Any]]:
     """Return what is timed, by name."""
     small, large = frame(3, 3), frame(8, 8)
@@ -102,7 +111,7 @@ def runs() -> dict[str, Callable[[], Any]]:
     drifts = paper.length * np.concatenate([np.linspace(0, s * 0.02, 1300) for s in (1, -1, 1)])
     loaded = rbsdem.peer.paper_columns()["soesianawati_1"]
     single, some, frames, houses = RUNS
-    walls, tower = wall_frame(), rbsdem.examples.house(16, 4)
+    walls, tower, plan = wall_frame(), rbsdem.examples.house(16, 4), in_plan()
     chain = rbsdem.Column(
         100.0, 614.4, rbsdem.springs.Elastic(7e9), rbsdem.springs.Elastic(2.5e10), n=5000
     )
@@ -119,6 +128,8 @@ def runs() -> dict[str, Callable[[], Any]]:
         "record, wall-frame, default": shake(walls, dt=0.01),
         "drawn 16 x 4, made": lambda: rbsdem.examples.house(16, 4).parts,
         "drawn 16 x 4, push-over to 1.5 %": lambda: rbsdem.pushover(tower, drift=0.015),
+        "building in plan, push-over to 0.03 %": lambda: rbsdem.pushover(plan, drift=3e-4),
+        "building in plan, record, default": shake(plan, dt=0.01),
         "static, one body, 6000 points": lambda: rbsdem.cyclic(one, displacement=way),
         "static, layered column, 3900 points": lambda: rbsdem.cyclic(layered, displacement=drifts),
         "record, one body": shake(loaded),

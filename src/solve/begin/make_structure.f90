@@ -127,6 +127,9 @@ contains
          if (allocated(error)) return
          frame%massed = pack([(j, j=1, frame%unknowns)], any(abs(momenta) > 0.0_wp, dim=2))
          frame%modal_momenta = momenta(frame%massed, :)
+         if (2*size(momenta, 2) > size(frame%massed)) then
+            frame%modal_matrix = matmul(frame%modal_momenta, transpose(frame%modal_momenta))
+         end if
       end if
       if (allocated(error) .or. case%frame%pattern /= 'modal') return
       call find_modes(frame, modes, error, modes_along)

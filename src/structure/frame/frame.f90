@@ -321,7 +321,7 @@ contains
       real(wp) :: s(3)
       integer :: i
 
-      if (allocated(self%modal_momenta)) call damp_modes(self%massed, self%modal_momenta, v, g)
+      if (allocated(self%modal_momenta)) call damp_modes(self, size(self%massed), v, g)
       if (allocated(self%damping)) call self%damping%subtract_product(v, g)
       if (.not. self%tangent_damping) return
       do i = 1, size(tangent)
@@ -333,20 +333,27 @@ contains
    end subroutine damp
 
    !> Subtract the damping of the modes.
-   pure subroutine damp_modes(massed, momenta, v, g)
-      integer, intent(in) :: massed(:)
-      !> (unknowns with mass, modes)
-      real(wp), intent(in), contiguous :: momenta(:, :), v(:)
+   pure subroutine damp_modes(self, massed, v, g)
+      class(frame_type), intent(in) :: self
+      !> Number of unknowns with mass
+      integer, intent(in) :: massed
+      real(wp), intent(in), contiguous :: v(:)
       real(wp), intent(inout), contiguous :: g(:)
-      real(wp) :: speed(size(massed)), force(size(massed))
+      real(wp) :: speed(massed), force(massed)
       integer :: i
 
-      speed = v(massed)
+      speed = v(self%massed)
       force = 0.0_wp
-      do i = 1, size(momenta, 2)
-         force = force + momenta(:, i)*inner_product(size(speed), momenta(:, i), speed)
-      end do
-      g(massed) = g(massed) - force
+      if (allocated(self%modal_matrix)) then
+         do i = 1, massed
+            force = force + self%modal_matrix(:, i)*speed(i)
+         end do
+      else
+         do i = 1, size(self%modal_momenta, 2)
+            force = force + self%modal_momenta(:, i)*inner_product(massed, self%modal_momenta(:, i), speed)
+         end do
+      end if
+      g(self%massed) = g(self%massed) - force
    end subroutine damp_modes
 
    !> Add a factor times the damping matrix.
