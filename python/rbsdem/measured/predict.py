@@ -30,6 +30,7 @@ from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
 from rbsdem.run.bands import (
     Band,
+    Learned,
     distance,
     features_of,
     has_bands,
@@ -38,7 +39,7 @@ from rbsdem.run.bands import (
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.response import cyclic
-from rbsdem.run.sisters import Learned, Loop, Told, learn, told
+from rbsdem.run.sisters import Loop, Told, learn, told
 from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.criteria import WATCHED
 from rbsdem.section.parameters import parameters

@@ -17,7 +17,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -118,19 +118,44 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-class HasLearned(Protocol):
-    """A column as tests of its laboratory make it, as `rbsdem.run.sisters.Learned` has it."""
+@dataclass(frozen=True)
+class Learned:
+    """A column as the tests of its laboratory make it.
 
-    @property
-    def column(self) -> LayeredColumn:
-        """The column with the numbers of the laboratory."""
+    Attributes
+    ----------
+    tests : int
+        Number of given tests.
+    column : LayeredColumn
+        The column with the numbers of the laboratory.
+    strength : float
+        Factor of its force.
+    friction : float
+        Force against the motion of the top, over the largest force.
+    second_order : float
+        Force in proportion to the displacement, over P/L: axial load over height.
+    left : float
+        What the tests leave of the scatter of the loop.
+    """
 
-    @property
-    def left(self) -> float:
-        """What the tests leave of the scatter of the loop."""
+    tests: int
+    column: LayeredColumn
+    strength: float
+    friction: float
+    second_order: float
+    left: float
 
     def force(self, displacement: Array) -> Array:
-        """Return the force that the laboratory will measure along a path [N]."""
+        """Return the force that the laboratory will measure along a path [N].
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (m,)
+            The path [m].
+        """
+        force = self.strength * path_force(self.column, displacement)
+        by_friction, by_load = forces_of_rig(self.column, displacement, force)
+        return np.asarray(force + self.friction * by_friction + self.second_order * by_load)
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,7 +346,7 @@ def band(
     *,
     samples: int = 16,
     scatter: Scatter | None = None,
-    learned: HasLearned | None = None,
+    learned: Learned | None = None,
 ) -> Band:
     """Predict the force along a path, with the band that holds 80 % of left-out tests.
 
@@ -584,6 +609,20 @@ def changed_column(column: LayeredColumn, values: dict[str, float]) -> LayeredCo
     drawing = column._drawing
     other = replace(drawing, parameters=drawing.parameters.with_values(**values))
     return replace(column, drawing=other, **other.fields_for(column.top))
+
+
+def forces_of_rig(column: LayeredColumn, displacement: Array, force: Array) -> tuple[Array, Array]:
+    """Return friction as large as the largest force, and the second-order force, along a path.
+
+    Parameters
+    ----------
+    column : LayeredColumn
+        The column.
+    displacement, force : ndarray, shape (m,)
+        The path [m], and the force of the column along it [N].
+    """
+    way = np.sign(np.gradient(displacement))
+    return way * np.max(np.abs(force)), column.axial_load / column.height * displacement
 
 
 def path_force(column: Column, displacement: Array) -> Array:

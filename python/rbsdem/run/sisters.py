@@ -19,14 +19,16 @@ import numpy as np
 
 from rbsdem._types import Array
 from rbsdem.run.bands import (
+    Learned,
     changed_column,
     distance,
     features_of,
+    forces_of_rig,
     path_force,
     scatter_of_tests,
 )
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.parameters import table
+from rbsdem.section.parameters import Row, table
 
 #: Standard deviations: of the fitted numbers, in spreads of their priors; of the force against the
 #: motion, over the largest; of the share of the second-order force.
@@ -66,46 +68,6 @@ class Told:
     features: tuple[float, ...]
     information: Array
     pull: Array
-
-
-@dataclass(frozen=True)
-class Learned:
-    """A column as the tests of its laboratory make it.
-
-    Attributes
-    ----------
-    tests : int
-        Number of given tests.
-    column : LayeredColumn
-        The column with the numbers of the laboratory.
-    strength : float
-        Factor of its force.
-    friction : float
-        Force against the motion of the top, over the largest force.
-    second_order : float
-        Force in proportion to the displacement, over P/L: axial load over height.
-    left : float
-        What the tests leave of the scatter of the loop.
-    """
-
-    tests: int
-    column: LayeredColumn
-    strength: float
-    friction: float
-    second_order: float
-    left: float
-
-    def force(self, displacement: Array) -> Array:
-        """Return the force that the laboratory will measure along a path [N].
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (m,)
-            The path [m].
-        """
-        force = self.strength * path_force(self.column, displacement)
-        by_friction, by_load = _of_rig(self.column, displacement, force)
-        return np.asarray(force + self.friction * by_friction + self.second_order * by_load)
 
 
 def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> Learned:
@@ -176,35 +138,31 @@ def told(loop: Loop) -> Told:
     return Told(_features(column), weighted @ slopes, weighted @ (loop.force - force))
 
 
+def _fitted() -> list[Row]:
+    return [row for row in table().values() if row.spread > 0]
+
+
 def _sizes() -> Array:
     """Return the standard deviations: strength, fitted numbers, friction, second-order force."""
-    numbers = [_NUMBERS for row in table().values() if row.spread > 0]
     strength = math.hypot(*scatter_of_tests().strength)
-    return np.array([strength, *numbers, _FRICTION, _SECOND_ORDER])
+    return np.array([strength, *[_NUMBERS] * len(_fitted()), _FRICTION, _SECOND_ORDER])
 
 
 def _slopes(column: LayeredColumn, displacement: Array, force: Array) -> Array:
     """Return the changes of the force along a path by each of them, shape (m, k)."""
-    unit = _STEP * np.eye(sum(row.spread > 0 for row in table().values()))
+    unit = _STEP * np.eye(len(_fitted()))
     moved = [path_force(_moved(column, places), displacement) for places in unit.tolist()]
     by_numbers = [(other - force) / _STEP for other in moved]
-    return np.column_stack([force, *by_numbers, *_of_rig(column, displacement, force)])
+    return np.column_stack([force, *by_numbers, *forces_of_rig(column, displacement, force)])
 
 
 def _moved(column: LayeredColumn, places: Sequence[float]) -> LayeredColumn:
     """Return a column whose fitted numbers are off by so many spreads of their priors."""
-    fitted = [row for row in table().values() if row.spread > 0]
     now, values = column._drawing.parameters.values, {}
-    for row, place in zip(fitted, places, strict=True):
+    for row, place in zip(_fitted(), places, strict=True):
         way = row.spread * place
         values[row.name] = now[row.name] * math.exp(way) if row.prior > 0 else now[row.name] + way
     return changed_column(column, values)
-
-
-def _of_rig(column: LayeredColumn, displacement: Array, force: Array) -> tuple[Array, Array]:
-    """Return friction as large as the largest force, and the second-order force, along a path."""
-    way = np.sign(np.gradient(displacement))
-    return way * np.max(np.abs(force)), column.axial_load / column.height * displacement
 
 
 def _lengths(displacement: Array) -> Array:
