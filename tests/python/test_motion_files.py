@@ -323,7 +323,7 @@ STATED = {
           "units: G", "UNITS: (g)", "Acc/Vel/Disp: g / cm/s / cm", "Einheit = g",
           "Acc/Vel/Disp: g/cm/s/cm", "# acc in g's", "in units of g, filtered", "# amplitudes [g]",
           "Aceleración en fracciones de g", "en unidades de 'g'", "Ускорение в долях g",
-          "acceleration normalised by gravity", "divided by g", "a/g (-)"],
+          "acceleration normalised by gravity", "values in gees", "divided by g", "a/g (-)"],
 }  # fmt: skip
 
 
@@ -337,6 +337,7 @@ STATED = {
         "10^-3 g",
         "nm/s^2",
         "dm/s/s",
+        "micrometers/s^2",
         "km/h/s",
     ],
 )
@@ -352,7 +353,8 @@ def test_a_part_of_a_unit_is_refused(line):
      "Tasa de muestreo 200", "Zeitschritt 0.005", "passo 0.005", "Interval: 0.005", "Δt = 0.005",
      "Fs:200Hz", "Passo 0,005 s", "MUESTRAS POR SEGUNDO: 200", "TASA DE MUESTREO : 200 m/s",
      "INTERVALO DE MUESTREO, C1-C6 (s) : /.005/.005/.005", "时间间隔：0.005s", "采样率200",
-     "h = 0.005", "Частота 200 Гц", "時間間隔 0.005 秒", "every 5000 microseconds", "200 S/s",
+     "h = 0.005", "Частота 200 Гц", "interval waktu 0.005 detik",
+     "bemonsteringsfrequentie 200", "時間間隔 0.005 秒", "every 5000 microseconds", "200 S/s",
      "tstep 0.005", "digitized at 200", "bandpass 0.1-25 Hz, 200 sps"],
 )  # fmt: skip
 def test_a_number_that_may_be_another_step_is_asked_for(line):

@@ -66,7 +66,7 @@ def unit_named(word: str) -> str:
         As in a file: "G", "cm/s/s", "cm/sec**2", "gal", "m/s^2".
     """
     text = _statement(word).strip().strip("()[].,:;'\"").strip()
-    if text in ("g", "gs", "g's"):
+    if text in ("g", "gs", "g's", "gees"):
         return "g"
     if text in ("gal", "gals", "гал"):
         return "cm/s2"
@@ -133,7 +133,7 @@ _MARKS = str.maketrans("", "", "0123456789+-.eE \t")
 _UNIT = re.compile(
     rf"(?<![a-z]){_PER_SECOND_SQUARED}|(?<![a-z])(?:gals?(?![a-z])|гал\b)"
     r"|(?:(?<=[(\[,:=/])\s*(?!g\.\s*[a-z])|\b(?:in|of|by|to|en|units?|(?:frac|frak|mult|unid|unit|дол)\w*"
-    r"(?:\s+d\w)?)\s+|_|(?<=\d)\s*)(?:g(?:'?s|ravity)?|['\"]g['\"])(?=\s*(?:[)\],;.:=/*x]|$|\s\())"
+    r"(?:\s+d\w)?)\s+|_|(?<=\d)\s*)(?:g(?:'?s|ees|ravity)?|['\"]g['\"])(?=\s*(?:[)\],;.:=/*x]|$|\s\())"
 )
 _NUMBER_BEFORE = re.compile(rf"(?<![\w.])({_NUM})\s*[x*×]?\s*$")
 _NUMBER_BEHIND = re.compile(rf"\s*[)\]:=x*×/]+[\s:=]*({_NUM})(?![\d.]*\s*[a-z])")
@@ -141,7 +141,7 @@ _NUMBER_BEHIND = re.compile(rf"\s*[)\]:=x*×/]+[\s:=]*({_NUM})(?![\d.]*\s*[a-z])
 _PART_OF_G = re.compile(
     r"(?<![\w])(?:(?:%|per\s?cent|percentage|porcentaje|prozent)\s*(?:(?:of|de|von)\s+)?|milli[ -]?"
     r"|micro[ -]?|[mnuµμ])g(?:als?)?(?![\w])|\b10\s*(?:\^|\*\*)\s*[({]?[-+]?\d+[)}]?\W{0,3}"
-    rf"(?:g|gals?|{_PER_SECOND_SQUARED})(?![\w])|(?<![a-z])(?:[dhknuµμ]|da)m\s*[/.]?\s*{_SECOND}\s*"
+    rf"(?:g|gals?|{_PER_SECOND_SQUARED})(?![\w])|(?<![a-z])(?:[dhknuµμ]|da|deci|kilo|micro|nano)m(?:et(?:er|re)s?)?\s*[/.]?\s*{_SECOND}\s*"
     rf"(?:/\s*{_SECOND}|(?:\^|\*\*)?[({{]?-?2)|\bkm\s*/\s*h\s*/"
 )
 _FACTOR = re.compile(rf"(?:\bscale|\bscaling|factor|multipl\w* by)\b[^\d.+-]*({_NUM})(?![\d:/])")
@@ -172,8 +172,9 @@ _TIMED = re.compile(
 _HINTED = re.compile(
     r"(?:(?:sampl|muestr|abtast|chantill|campion|amostr|orne|step|schritt|interv|aralig|passo?\b|paso"
     r"|采样|周波数|间隔|間隔|步长|шаг|частот|pas de temps|delta\b|δt|\bfs\b|\b[ht]\b(?=\s*=)"
-    r"|\bsr\b|\bfreq|rate\b|digiti[sz])[^\d.+-]{0,24}?"
-    rf"|(?<![\w.])1\s*/)\s*({_NUM})(?![\d.]|\s*(?!s(?:ec)?\b|m/s)[-a-z/%])"
+    r"|\bsr\b|fre[qck]|rate\b|digiti[sz])[^\d.+-]{0,24}?"
+    rf"|(?<![\w.])1\s*/)\s*({_NUM})(?![\d.]|\s*(?:[-%]|/(?!s)"
+    r"|(?:[kcm]?m|gals?|g|deg\w*|v|khz|ms\w*|us|milli\w*|micro\w*|of)\b(?!/s)))"
 )
 #: Numbers of other things: how many values there are.
 _NUMBER_OF = re.compile(
