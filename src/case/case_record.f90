@@ -1,8 +1,10 @@
 !> A whole case: the contents of a namelist file.
 module rbs_case_case_record
+   use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_key_visitor, only: key_visitor, visited_record
+   use rbs_base_text, only: to_text
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
@@ -10,8 +12,9 @@ module rbs_case_case_record
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
+   use rbs_structure_frame_frame_checks, only: check_reference
    use rbs_structure_frame_frame_parts, only: frame_parts
-   use rbs_structure_frame_frame_record, only: frame_groups, frame_record
+   use rbs_structure_frame_frame_record, only: frame_groups, frame_record, name_length
    implicit none
    private
 
@@ -241,6 +244,7 @@ contains
             end do
          end if
          call self%parts%find(with_kinds, messages)
+         call check_sections()
          if (self%is_drawn()) deallocate (self%parts)
          call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
@@ -248,6 +252,33 @@ contains
                               'dead load of floors, beams and nodes')
          end if
       end subroutine validate_frame
+
+      !> Drawings that kinds of members name.
+      subroutine check_sections()
+         character(len=name_length), allocatable :: names(:)
+         integer :: i
+
+         allocate (names(0))
+         if (allocated(self%drawing)) names = self%drawing%name
+         do i = 1, size(self%frame%kind)
+            associate (kind => self%frame%kind(i), &
+                       name => "member_kind '"//trim(self%frame%kind(i)%name)//"'")
+               if (kind%section /= '') call check_reference(kind%section, names, name, 'drawing', messages)
+               if (kind%section_to /= '') call check_reference(kind%section_to, names, name, 'drawing', &
+                                                               messages)
+               if (kind%section == '' .and. (kind%section_to /= '' .or. allocated(kind%shear_spans) .or. &
+                                             any(is_given([kind%bar_length, kind%concrete_length])))) then
+                  call messages%add(name//': section_to, shear_spans and lengths of layers are of a kind '// &
+                                    'with a section; name it, or remove them')
+               else if (allocated(kind%shear_spans)) then
+                  if (size(kind%shear_spans) /= 4) then
+                     call messages%add(name//': shear_spans has '//to_text(size(kind%shear_spans))// &
+                                       ' values; give four')
+                  end if
+               end if
+            end associate
+         end do
+      end subroutine check_sections
 
       !> Add a member kind with any numbers in place of a drawing, whose springs Python makes.
       subroutine stand_in(name)
@@ -311,6 +342,7 @@ contains
    !> of the members of a frame; or the loads of a frame.
    pure logical function is_drawn(self)
       class(case_record), intent(in) :: self
+      integer :: i
 
       if (.not. allocated(self%frame)) then
          is_drawn = allocated(self%drawing) .and. only_beneath(self%column%shear) &
@@ -318,9 +350,17 @@ contains
          return
       end if
       associate (frame => self%frame)
-         is_drawn = allocated(self%drawing) .or. size(frame%infill_of) > 0 .or. allocated(frame%bays_x) &
+         is_drawn = size(frame%infill_of) > 0 .or. allocated(frame%bays_x) &
                     .or. size(frame%node_load) > 0 .or. frame%self_weight &
                     .or. frame%mass /= 'of_floors' .or. any(abs(frame%floor%live_load) > 0.0_wp)
+         if (.not. allocated(self%drawing)) return
+         do i = 1, size(self%drawing)
+            associate (name => self%drawing(i)%name)
+               ! The springs of a kind are there, whatever section it names.
+               is_drawn = is_drawn .or. any([frame%column_of%kind, frame%beam_of%kind] == name) .or. &
+                          all([frame%kind%section, frame%kind%section_to] /= name)
+            end associate
+         end do
       end associate
 
    contains

@@ -11,7 +11,8 @@ from samples import UPRIGHT as C
 from test_invariants_frames import free, moment_size, off_balance
 
 import rbsdem
-from rbsdem.frames import TeeSection
+from rbsdem.frames import Frame, FrameNode, Member, TeeSection
+from rbsdem.model.frame import with_rigid_end
 from rbsdem.run.case import case_of_text
 
 STEEL, TIES = B.steel, B.ties
@@ -225,9 +226,9 @@ def test_a_drawn_frame_comes_back_from_a_case_file_with_its_sections(more):
     # 40 lines in place of some 500; a frame that was changed has its springs.
     springs = frame.to_namelist(springs=True)
     assert len(springs.splitlines()) > 5 * len(text.splitlines())
-    # Other axial loads would make other columns.
+    # Other axial loads would make other columns: it has these springs, and their sections.
     lost = replace(frame, beam_load=1e3)
-    assert "&drawing" not in lost.to_namelist()
+    assert len(lost.to_namelist().splitlines()) > len(springs.splitlines())
     assert case_of_text(lost.to_namelist() + LOADING).column == lost
 
 
@@ -346,3 +347,84 @@ def test_a_beam_upside_down_is_told():
         rbsdem.Frame.grid([3.2] * 2, [5.6] * 2, columns=C, beams=B.mirrored, **MORE)
     # Without a load there is nothing that it hangs from.
     rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=B.mirrored)
+
+
+def test_a_frame_that_steps_back_is_one_of_its_nodes_and_members():
+    """Where neither a column nor a beam is there is no node, no load and no share of the mass."""
+    step = {"columns": {(0, 0): C, (3, 2): None}, "beams": {(0, 0): B, (2, 2): None}}
+    frame = rbsdem.Frame.grid(
+        [3.2, 3.0], [5.6, 4.0], **step, **MORE, node_load=10e3, self_weight=True,
+        mass="from_loads", diaphragm=True,
+    )  # fmt: skip
+    beams, posts = 25e3 * 0.15 * np.array([9.6, 5.6]), 25e3 * 0.16 * np.array([4.8 + 3.0, 3.0])
+    weights = 23e3 * np.array([9.6, 5.6]) + beams + posts + np.array([20e3, 10e3])
+    assert np.multiply(frame.floor_mass, 9.80665) == pytest.approx(weights, rel=1e-12)
+    low, high = frame.floor_mass
+    masses = {"N-1-1": low * 5.6 / 19.2, "N-2-1": low / 2, "N-3-1": low * 4.0 / 19.2}
+    masses |= {"N-1-2": high / 2, "N-2-2": high / 2}
+    parts, loads = frame.parts, {node.name: node.load_y for node in frame.nodes}
+    nodes = [
+        FrameNode(
+            name, x, y, floor=int(name[-1]), support="" if int(name[-1]) else "fixed",
+            mass=masses.get(name, 0.0), load_y=loads.get(name, 0.0),
+            moves_with=f"N-1-{name[-1]}" if int(name[-1]) and name[2] > "1" else "",
+        )
+        for name, x, y in zip(parts.nodes, parts.x, parts.y, strict=True)
+        if name != "N-3-2"
+    ]  # fmt: skip
+    members = [
+        Member(
+            name, parts.nodes[at.start], parts.nodes[at.end],
+            with_rigid_end(frame.kinds[name], 0.0), at.rigid, at.load,
+        )
+        for name, at in frame.geometry.items()
+    ]  # fmt: skip
+    hand = Frame(nodes=nodes, members=members, kinematics="pdelta")
+    one, two = (rbsdem.pushover(each, drift=0.01, points=2) for each in (frame, hand))
+    np.testing.assert_allclose(two.force, one.force, rtol=1e-12)
+    np.testing.assert_allclose(two.storey_drift, one.storey_drift, rtol=1e-12)
+    np.testing.assert_allclose(*(rbsdem.modes(f, 2).period for f in (frame, hand)), rtol=1e-12)
+    # Nothing that is given to a node which is not there is lost without a message.
+    with pytest.raises(rbsdem.InputError, match="node 'N-3-2' has no member"):
+        replace(frame, nodes=[*frame.nodes, FrameNode("N-3-2", mass=1e3)])
+
+
+def test_a_frame_that_was_changed_keeps_its_sections(drawn):
+    mesh = rbsdem.Curtain(0.01, 0.2, STEEL)
+    wall = rbsdem.WallSection(1.8, 0.2, concrete=C.concrete, vertical=mesh, horizontal=mesh)
+    walled = rbsdem.Frame.grid([3.2, 3.0], [5.6, 4.0], columns=C, beams=B, walls={3: wall}, **MORE)
+    changed = walled.without("B-1-2")
+    read = case_of_text(changed.to_namelist()).column
+    assert read == changed
+    for name, kind in changed.kinds.items():
+        found = read.kinds[name]
+        known = found.sections, found.shear_spans, found.gauge
+        assert known == (kind.sections, kind.shear_spans, kind.gauge)
+    assert read.kinds["C-3-1"].gauge is not None
+    # The executable solves it by its springs.
+    assert case_of_text(changed.to_namelist(springs=True)).column == changed
+
+
+SECTIONS = [
+    ("section = 'a'", "there is no drawing 'a'"),
+    ("shear_spans = 1.0, 1.0, 1.0, 1.0", "of a kind with a section"),
+    ("section = 'section-1', shear_spans = 1.0, 2.0", "shear_spans has 2 values; give four"),
+    ("section = 'section-1', bar_length = 0.3", "give both lengths and that joint"),
+]
+
+
+@pytest.mark.parametrize(("keys", "told"), SECTIONS)
+def test_sections_of_kinds_name_what_is_wrong(keys, told):
+    kind = rbsdem.FrameMember(3e10, 0.16, 2e-3, sections=(C, C))
+    text = rbsdem.Frame([3.0], None, kind).to_namelist()
+    assert case_of_text(text).column.kinds["C-1-1"].sections == (C, C)
+    with pytest.raises(rbsdem.InputError, match=told):
+        case_of_text(text.replace("section = 'section-1'", keys))
+
+
+def test_a_column_without_load_is_one_whatever_round_off_says():
+    kinds = [
+        rbsdem.Frame.grid([3.2], columns=C, axial_loads={"C-1-1": load}).kinds["C-1-1"]
+        for load in (1e-7, 0.0, -1e-7)
+    ]
+    assert kinds[0] == kinds[1] == kinds[2]

@@ -1,14 +1,18 @@
 """Buildings in plan: planar frames on rigid floors, held against closed forms and planar frames."""
 
 import pickle
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from test_building import MORE, B, C
 
 import rbsdem
 from rbsdem import codes, plot
+from rbsdem.__main__ import main
 from rbsdem.errors import AccuracyWarning
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member, TeeSection
 from rbsdem.methods.verification import eccentric_storey, peterson, sprung_storey
@@ -192,9 +196,16 @@ def test_a_whole_building_comes_back(grid, tmp_path):
     loading = "&loading drive = 'displacement', values = 0.01 /\n"
     case = case_of_text(grid.to_namelist() + loading)
     assert case.column == grid
+    # Its sections come with it: what is judged is what was drawn.
+    for name, kind in grid.kinds.items():
+        read = case.column.kinds[name]
+        assert (read.sections, read.shear_spans) == (kind.sections, kind.shear_spans)
     saved = case.run()
     saved.save(tmp_path / "push.npz")
-    assert rbsdem.read_result(tmp_path / "push.npz") == saved
+    opened = rbsdem.read_result(tmp_path / "push.npz")
+    assert opened == saved
+    judged = [codes.assess(one, "en_1998_3").to_pandas() for one in (saved, opened)]
+    pandas.testing.assert_frame_equal(*judged)
     one, two = (rbsdem.pushover(each, drift=0.003, points=2) for each in (grid, again))
     np.testing.assert_array_equal(one.force, two.force)
 
@@ -252,8 +263,9 @@ def test_targets_are_amplified_by_torsion_of_the_modes():
 
 
 def test_the_report_of_a_building_has_its_frames(tmp_path):
-    frame = rbsdem.Frame([3.0], [5.0], ELASTIC, ELASTIC, floor_mass=1e4, beam_load=1e4)
-    push = rbsdem.pushover(rbsdem.Building([(frame, 0.0, 0.0)]), displacement=0.01, points=2)
+    # Masses of a grid in plan are those of its floors, and its frames have none.
+    building = plan(floor_load=6e3, mass="from_loads")
+    push = rbsdem.pushover(building, displacement=0.01, points=2)
     text = rbsdem.report(push, tmp_path / "house.html").read_text()
     for heading in ("Inputs", "Building", "x-1 Frame", "x-1 Response", "x-1 Members"):
         assert f"<h2>{heading}</h2>" in text
@@ -265,6 +277,35 @@ def test_what_is_of_one_frame_refuses_a_building(pushed):
     found = codes.assess(pushed, "en_1998_3")
     with pytest.raises(rbsdem.InputError, match=r"assessment.frame\('x-1'\)"):
         plot.assessment(found)
+
+
+def test_the_command_line_runs_pairs_and_reports(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words):
+        monkeypatch.setattr(sys, "argv", ["rbsdem", *words])
+        return main()
+
+    house = plan(floor_load=6e3, mass="from_loads", damping=0.05)
+    solver = "&analysis method = 'newmark', dt = 0.01 /\n"
+    Path("house.nml").write_text(house.to_namelist() + solver)
+    pair = swings(0), swings(1)
+    for name, swing in zip(("quake_x.csv", "quake_y.csv"), pair, strict=True):
+        table = np.column_stack((swing.time, swing.acceleration))
+        np.savetxt(name, table, delimiter=",", header="time_s,acceleration_m/s2", comments="")
+    records = ["house.nml", "quake_x.csv", "quake_y.csv", "--pairs"]
+    assert run("ensemble", *records, "--out", "a") == 0
+    drift = pandas.read_csv("a/runs.csv").peak_storey_drift
+    direct = rbsdem.ensemble(house, [pair], method="newmark", dt=0.01)
+    assert drift.to_numpy() == pytest.approx(direct.measures["peak_storey_drift"], rel=1e-5)
+    assert run("ida", *records, "--levels", "1,2", "--out", "b") == 0
+    assert len(pandas.read_csv("b/ida.csv")) == 2
+    assert run("ida", *records[:2], "--pairs", "--levels", "1") == 2
+    assert "1 records are no pairs" in capsys.readouterr().err
+    loading = "&loading drive = 'displacement', values = 0.01 /\n"
+    Path("push.nml").write_text(house.to_namelist() + loading)
+    assert run("run", "push.nml", "--report") == 0
+    assert "<h2>x-1 Response</h2>" in Path("push.html").read_text()
 
 
 SHAKEN = {"method": "newmark", "dt": 0.01}
@@ -500,6 +541,56 @@ def test_a_drawn_building_and_its_case_file_are_one(tmp_path):
         np.testing.assert_array_equal(again.channels[name], values, err_msg=name)
     push.save(tmp_path / "push.npz")
     assert rbsdem.read_result(tmp_path / "push.npz").building.plan == house.plan
+
+
+def test_a_plan_without_a_corner_is_its_frames_one_by_one():
+    def left_out(*places):
+        return {(0, 0, 0): ELASTIC} | dict.fromkeys(places)
+
+    building = plan(
+        columns=left_out((3, 3, 0), (3, 0, 2)), beams_x=left_out((2, 3, 0), (2, 0, 2)),
+        beams_y=left_out((2, 3, 0), (0, 3, 2)), floor_load=6e3, edge_load=1e3, mass="from_loads",
+    )  # fmt: skip
+    # The ground floor has three of four panels, the roof the two on the left; each has its edge.
+    weights = [6e3 * (90.0 - 20.0) + 38e3, 6e3 * 54.0 + 30e3]
+    assert building.plan_mass * 9.80665 == pytest.approx(weights, rel=1e-12)
+    moments = [6e3 * (54.0 * 3.0 + 16.0 * 8.0), 6e3 * 54.0 * 3.0 + 30e3 * 3.0]
+    moments[0] += 1e3 * (10.0 * 5.0 + 6.0 * 3.0 + 4.0 * 8.0 + 4.0 * 10.0 + 5.0 * 6.0)
+    assert building.centres[:, 0] == pytest.approx(np.divide(moments, weights), rel=1e-12)
+    assert building.corners(2).max(axis=0) == pytest.approx([6.0, 9.0])
+    assert [len(building.corners(floor)) for floor in (1, 2)] == [7, 6]
+    # Its frames by nodes and members, in which nothing is where the grid steps back.
+    frames = []
+    for plane in building.planes:
+        frame, parts = plane.frame, plane.frame.parts
+        loads = {node.name: node.load_y for node in frame.nodes}
+        nodes = [
+            FrameNode(
+                parts.nodes[i], parts.x[i], parts.y[i], floor=int(parts.floor[i]),
+                support="fixed" if parts.floor[i] == 0 else "",
+                load_y=loads.get(parts.nodes[i], 0.0),
+            )
+            for i in np.unique(parts.ends)
+        ]  # fmt: skip
+        tied = {node.floor: node.name for node in nodes[::-1]}
+        nodes = [
+            replace(node, moves_with=tied[node.floor])
+            if node.floor and tied[node.floor] != node.name
+            else node
+            for node in nodes
+        ]
+        members = [
+            Member(name, parts.nodes[at.start], parts.nodes[at.end], ELASTIC, load=at.load)
+            for name, at in frame.geometry.items()
+        ]
+        frames.append((Frame(nodes=nodes, members=members), plane.angle, plane.arm, 0.0))
+    more = {"floor_mass": building.plan_mass, "inertia": building.inertia}
+    other = rbsdem.Building(frames, centres=building.centres, **more)
+    one, two = (rbsdem.pushover(each, drift=0.01, points=2) for each in (building, other))
+    for name in ("force", "floor_rotation", "plane_shear"):
+        a, b = getattr(one, name), getattr(two, name)
+        np.testing.assert_allclose(b, a, rtol=0, atol=1e-12 * np.abs(a).max(), err_msg=name)
+    assert case_of_text(building.to_namelist()).column == building
 
 
 TEE = TeeSection(0.3, 0.5, C.concrete, flange_width=0.9, flange_thickness=0.1)

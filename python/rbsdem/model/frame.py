@@ -153,8 +153,11 @@ class FrameMember:
     def _springs(self, group: str) -> tuple[tuple[float, Spring], ...]:
         return getattr(self, group) or ()
 
-    def _groups(self, name: str) -> list[Any]:
-        """Return the groups of a case file under a name, and the springs that stand in some."""
+    def _groups(self, name: str, drawn: Mapping[Any, dict[str, Any]]) -> list[Any]:
+        """Return the groups of a case file under a name, and the springs that stand in some.
+
+        `drawn` has the names of drawings by sections; without its own they are left out.
+        """
         found: list[Any] = [
             ("member_kind", {
                 "name": _core.Text(name),
@@ -169,6 +172,7 @@ class FrameMember:
                 "interior": None if self.interior == "elastic" else self.interior,
                 "ends": None if self.ends == "continuous" else self.ends,
                 "after_dead_load": self.after_dead_load or None,
+                **self._drawing(drawn),
             })
         ]  # fmt: skip
         for group in ("flexure", "shear"):
@@ -180,6 +184,21 @@ class FrameMember:
         if self.axial_spring is not None:
             found.append(("axial_spring", {"kind": _core.Text(name)}, self.axial_spring))
         return found
+
+    def _drawing(self, drawn: Mapping[Any, dict[str, Any]]) -> dict[str, Any]:
+        """Return the keys of its sections, and of what is known of its springs by them."""
+        if self.sections not in drawn:
+            return {}
+        halves = drawn[self.sections]
+        keys = {"section": halves["kind"], "section_to": halves["kind_to"]}
+        if self.shear_spans is not None:
+            keys["shear_spans"] = [span for pair in self.shear_spans for span in pair]
+        if self.gauge is not None:
+            lengths = dict(zip(self.gauge.part, self.gauge.length, strict=True))
+            keys["core_layers"] = self.gauge.part.count("core") or None
+            keys["concrete_length"] = lengths.get("core", lengths.get("cover"))
+            keys["bar_length"] = lengths["bar"]
+        return keys
 
 
 def _by_position(
@@ -610,19 +629,23 @@ def stated(kind: FrameMember) -> NamedKind:
 
 def names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
     """Return the names of kinds of members, made up where there is none."""
-    statements = dict.fromkeys(map(stated, kinds))
-    names: dict[NamedKind, str] = {}
-    taken = {name for name, _ in statements}
-    for name, statement in statements:
-        numbers = (f"kind-{i}" for i in count(len(names) + 1))
-        names[name, statement] = name or next(number for number in numbers if number not in taken)
-        taken.add(names[name, statement])
+    # Most members of a grid are of one and the same object, and to hash a kind takes long.
+    different = {id(kind): kind for kind in kinds}.values()
+    names = dict.fromkeys(map(stated, different), "")
+    taken = {name for name, _ in names}
+    for number, statement in enumerate(names, 1):
+        numbers = (f"kind-{i}" for i in count(number))
+        names[statement] = statement[0] or next(one for one in numbers if one not in taken)
+        taken.add(names[statement])
     return names
 
 
-def groups_of_kinds(names: Mapping[NamedKind, str]) -> list[Group]:
-    """Return the groups of kinds of members, under their names."""
-    return placed([entry for (_, kind), name in names.items() for entry in kind._groups(name)])
+def groups_of_kinds(
+    names: Mapping[NamedKind, str], drawn: Mapping[Any, dict[str, Any]]
+) -> list[Group]:
+    """Return the groups of kinds of members, under their names, with those of `drawn` sections."""
+    kinds = [(kind, name) for (_, kind), name in names.items()]
+    return placed([entry for kind, name in kinds for entry in kind._groups(name, drawn)])
 
 
 def groups_of_cells(
@@ -648,9 +671,12 @@ def groups_of_cells(
         Keys that name the drawings of the other cells.
     """
     found: list[Group] = []
+    kinds: dict[int, str] = {}
     for place, cell in rules_of(cells, "line" if group == "column_of" else "bay", "storey", lines):
         if isinstance(cell, FrameMember):
-            kind = {"kind": _core.Text(names[stated(cell)])} | rigid_lengths(cell.rigid_end)
+            if id(cell) not in kinds:
+                kinds[id(cell)] = names[stated(cell)]
+            kind = {"kind": _core.Text(kinds[id(cell)])} | rigid_lengths(cell.rigid_end)
         else:
             kind = drawn[cell] if cell is not None else {"kind": _core.Text("none")}
         found.append((group, place | kind))

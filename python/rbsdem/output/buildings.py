@@ -73,10 +73,13 @@ def plan(
     floors = len(building.storey_heights)
     number = floors if floor is None else floor
     at = _arguments.integer(number, "plot.plan: floor", least=1, most=floors) - 1
-    lines = []
+    lines: list[Array] = []
+    moving: list[Array] = []
     for plane in building.planes:
-        along = np.unique(plane.frame.parts.x)
-        lines.append(_in_space(plane, np.column_stack((along, 0.0 * along)))[:, :2])
+        parts = plane.frame.parts
+        x = parts.x[np.unique(parts.ends)], parts.x[parts.floor == at + 1]
+        for found, along in zip((lines, moving), map(np.unique, x), strict=True):
+            found.append(_in_space(plane, np.column_stack((along, 0.0 * along)))[:, :2])
     places = np.vstack(lines)
     wide, high = np.ptp(places, axis=0)
     size = (4.6, float(np.clip(4.6 * high / max(wide, 1e-3) + 0.5, 2.0, 6.0)))
@@ -104,7 +107,8 @@ def plan(
             moved = np.array([result.moved(place)[row, at] for place in places])
             scale = scale_of(scale, np.hypot(*moved.T), max(wide, high), "plot.plan")
             drawn.plot(*(centre + scale * path).T, **MODEL_LINE | {"color": "#c0392b", "zorder": 4})
-            for line in lines:
+            # Where the building steps back a floor ends before the line.
+            for line in (own for own in moving if own.size):
                 ends = np.array([result.moved(end)[row, at] for end in line[[0, -1]]])
                 drawn.plot(*(line[[0, -1]] + scale * ends).T, **MEMBER)
             drawn.set_title(f"Floor {at + 1}, displacements × {scale:g}")
@@ -151,10 +155,11 @@ def building(
     if ax is None:
         with style():
             drawn = new_axes(1, 1, (5.0, 4.2), subplot_kw={"projection": "3d"})[0]
-    size = float(max(np.ptp(structure.corners, axis=0).max(), structure.parts.y.max()))
+    corners = structure.corners(1)
+    size = float(max(np.ptp(corners, axis=0).max(), structure.parts.y.max()))
     if result is not None:
         row = row_of(result, row)
-        moved = np.array([result.moved(corner)[row] for corner in structure.corners])
+        moved = np.array([result.moved(corner)[row] for corner in corners])
         scale = scale_of(scale, np.hypot(*np.moveaxis(moved, -1, 0)), size, "plot.building")
     points: dict[str, list[Array]] = {state: [] for state in STATES}
     with style_of(drawn):

@@ -162,7 +162,7 @@ def frame(
                 for node, end in ((member.start, bent[0]), (member.end, bent[-1])):
                     drawn.plot(*np.vstack((moved[node], end)).T, **line)
             drawn.set_title(_heading(result, row, f"Displacements × {scale:g}"))
-        drawn.plot(*moved.T, **_NODE)
+        drawn.plot(*moved[np.unique(structure.parts.ends)].T, **_NODE)
         _draw_infills(drawn, structure, result, row, moved)
         _draw_hinges(drawn, structure, result, row, 0.0 if scale is None else scale)
         if result is None and len(structure.parts.members) <= _NAMED:

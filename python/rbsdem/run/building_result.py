@@ -137,9 +137,16 @@ class BuildingResult(Result):
 
     @property
     def corner_drift(self) -> Array:
-        """Largest storey drift of any corner, in whatever direction, shape (rows, storeys)."""
-        drifts = [self.drift_at(corner) for corner in self.building.corners]
-        return np.asarray(np.max([np.hypot(*np.moveaxis(d, -1, 0)) for d in drifts], axis=0))
+        """Largest drift of any corner of the floor above, in any direction, (rows, storeys)."""
+        sizes: dict[tuple[float, ...], Array] = {}
+        largest = []
+        for i in range(len(self.building.storey_heights)):
+            corners = list(map(tuple, self.building.corners(i + 1).tolist()))
+            for at in corners:
+                if at not in sizes:
+                    sizes[at] = np.hypot(*np.moveaxis(self.drift_at(at), -1, 0))
+            largest.append(np.max([sizes[at][:, i] for at in corners], axis=0))
+        return np.column_stack(largest)
 
     def frame(self, name: str) -> FrameResult:
         """Return the response of one frame, with all that a planar frame has.

@@ -243,10 +243,9 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
     if "frame" in groups:
-        if "bays_x" in groups["frame"][-1]:
-            frame: Frame = building_in_plan(groups, drawings)
-        else:
-            frame = building_of(groups) if "plane" in groups else frame_of(groups, drawings)
+        in_plan = "bays_x" in groups["frame"][-1]
+        make = building_in_plan if in_plan else building_of if "plane" in groups else frame_of
+        frame: Frame = make(groups, drawings)
         return _case_of(frame, last_of, settings, time, values, acting, more)
     column = _core.typed("column", last_of["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))

@@ -14,10 +14,11 @@ from rbsdem.model.column import SPRING_GROUPS, Column, Damping, notes_off
 from rbsdem.model.frame import FrameMember, FrameNode, Member, places_of, with_rigid_end
 from rbsdem.model.materials import Bars, Concrete, Lap, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
-from rbsdem.model.springs import SPRINGS, Layered, Spring
+from rbsdem.model.springs import SPRINGS, Gauge, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
 from rbsdem.section.columns import column
 from rbsdem.section.frame import Frame
+from rbsdem.section.grid import is_drawn
 from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
@@ -296,9 +297,7 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
     InputError
         If the members of a drawn frame cannot be made.
     """
-    kinds: dict[str, Any] = {
-        given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])
-    }
+    kinds = _kinds(groups, drawings)
     frame = _core.typed("frame", groups["frame"][-1])
     bays, storeys = len(frame.get("bays", ())), max(len(frame.get("storeys", ())), 1)
     damping = groups.get("damping")
@@ -311,7 +310,6 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
         "panel": next((_spring(own) for own in panels if own["panel"] == "all"), None),
         "losses": {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
     }
-    kinds |= {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
     columns: Any = _cells("column_of", "line", bays + 1, groups, kinds) or None
     beams = _cells("beam_of", "bay", bays, groups, kinds) or None
     infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
@@ -322,7 +320,8 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
         for given in groups.get("node_load", [])
         for place in places_of(_pair(given, "line", "floor"), "node_load", bays + 1)
     }
-    if not (drawings or drawn or weights or infilled or any(live)):
+    cells = [*(columns or {}).values(), *(beams or {}).values()]
+    if not (any(map(is_drawn, cells)) or drawn or weights or infilled or any(live)):
         return Frame(columns=columns, beams=beams, floor_mass=mass, beam_load=dead, **made)
     if "panel_hoops" in drawn:
         hoops = kinds.get(drawn["panel_hoops"])
@@ -343,8 +342,7 @@ def building_in_plan(groups: Groups, drawings: Sequence[Groups] = ()) -> Buildin
     InputError
         If a place or a kind is not of the grid, or the members cannot be made.
     """
-    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
-    kinds |= {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
+    kinds = _kinds(groups, drawings)
     infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
     frame = _core.typed("frame", groups["frame"][-1])
     for name in ("storeys", "bays_y"):
@@ -399,9 +397,9 @@ def _cells_in_plan(
     return made
 
 
-def building_of(groups: Groups) -> Building:
+def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
     """Return the building of the groups of a case, whose frames have the nodes of its planes."""
-    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
+    kinds = _kinds(groups, drawings)
     frame = _core.typed("frame", groups["frame"][-1])
     damping = groups.get("damping")
     losses = {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])}
@@ -496,8 +494,16 @@ def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
     )
 
 
-def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
-    """Return a kind of members with its springs."""
+def _kinds(groups: Groups, drawings: Sequence[Groups]) -> dict[str, Any]:
+    """Return kinds of members, and sections of drawings, by their names."""
+    kinds: dict[str, Any] = {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
+    for given in groups.get("member_kind", []):
+        kinds[given["name"]] = _kind(given, groups, kinds)
+    return kinds
+
+
+def _kind(given: dict[str, Any], groups: Groups, sections: Mapping[str, Section]) -> FrameMember:
+    """Return a kind of members with its springs, and the sections that they were made of."""
     found: dict[str, Any] = {}
     for group, usual in (("flexure", [0.0, 1.0]), ("shear", [0.5])):
         for spring in groups.get(group, []):
@@ -510,7 +516,28 @@ def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
             found["axial_spring"] = _spring(spring)
     # A rigid kind has none of them.
     own: dict[str, Any] = dict.fromkeys(("modulus", "area", "inertia"), 1.0)
-    return FrameMember(**own | _core.typed("member_kind", given) | found)
+    own |= _core.typed("member_kind", given) | found
+    keys = ("section", "section_to", "core_layers", "concrete_length", "bar_length")
+    first, last, core, *lengths = (own.pop(key, None) for key in keys)
+    if first is not None:
+        own["sections"] = sections[first], sections[last or first]
+    if "shear_spans" in own:
+        spans = own["shear_spans"]
+        own["shear_spans"] = tuple(spans[:2]), tuple(spans[2:])
+    if lengths != [None, None]:
+        foot = found.get("flexure", {}).get(0.0)
+        layers = len(foot.layers) if isinstance(foot, Layered) else 0
+        numbers = {"core": core or 0, "cover": 0, "bar": len(own["sections"][0].bars)}
+        numbers["cover"] = layers - sum(numbers.values())
+        if None in lengths or numbers["cover"] < 0:
+            raise InputError(
+                f"member_kind {given['name']!r}: concrete_length, bar_length and core_layers are "
+                "of a joint of layers at its start, with the bars of its section; give both "
+                "lengths and that joint, or none of them"
+            )
+        parts: Any = [part for part, number in numbers.items() for _ in range(number)]
+        own["gauge"] = Gauge(tuple(parts), tuple(lengths[part == "bar"] for part in parts))
+    return FrameMember(**own)
 
 
 def _layered(given: dict[str, Any], groups: Groups) -> Layered:

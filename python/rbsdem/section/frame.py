@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
@@ -267,7 +267,8 @@ class Frame:
             how = node.support or held.get(node.name, "free")
             sprung = any((node.shear, node.axial_spring, node.flexure))
             held[node.name] = "springs" if how == "free" and sprung else how
-        return {name: how for name, how in held.items() if how != "free"}
+        joined = {parts.nodes[i] for i in parts.ends.ravel()}
+        return {name: how for name, how in held.items() if how != "free" and name in joined}
 
     @property
     def height(self) -> float:
@@ -392,7 +393,7 @@ class Frame:
         Raises
         ------
         InputError
-            If there is no such member, or a node is left without one.
+            If there is no such member, or a node outside of the grid is left without one.
         """
         cells: Any = {"column": dict(self.columns or {}), "beam": dict(self.beams or {})}  # type: ignore[arg-type]
         own = {member.name: member for member in self.members}
@@ -477,8 +478,9 @@ class Frame:
     ) -> _core.Statement:
         """Return the groups of a case file; some cells may be drawn, with `more` keys of the grid.
 
-        Of a drawn cell `drawn` has the keys that name its drawings; the floors, nodes and members
-        of a drawing stand in the place of those that were made of them.
+        Of a drawn cell, and of the sections of a kind, `drawn` has the keys that name its drawings;
+        the floors, nodes and members of a drawing stand in the place of those that were made of
+        them.
         """
         grids: Any = cells or (self.columns or {}, self.beams or {})
         drawn = drawn or {}
@@ -496,7 +498,7 @@ class Frame:
         parts: list[_core.Statement | Group] = [("frame", own_values | more)]
         lines = len(self.bays or ()) + 1  # type: ignore[arg-type]
         parts += self._floors() if drawing is None else drawing.floors(lines)
-        parts += groups_of_kinds(names)
+        parts += groups_of_kinds(names, drawn)
         parts += groups_of_cells(grids[0], "column_of", lines, names, drawn)
         parts += groups_of_cells(grids[1], "beam_of", lines - 1, names, drawn)
         nodes = self.nodes if drawing is None else drawing.nodes
@@ -562,8 +564,9 @@ class Frame:
         columns, beams : Section, pair of Section, FrameMember, or mapping
             One for all, or by (line, storey) or (bay, storey), where the last that fits counts:
             numbers, tuples of them, 0 for all, "outer" or "inner": ``{("outer", 1): c1, ("inner",
-            (1, 2)): c2}``. None: there is no member. A pair are the sections of the two halves.
-            y > 0 of a section is up in a beam, on the left in a column.
+            (1, 2)): c2}``. None: there is no member; a node without any is not there, as where
+            upper storeys step back. A pair are the sections of the two halves. y > 0 of a
+            section is up in a beam, on the left in a column.
         ends : float or "asce", optional
             Part of a node that is rigid in columns and beams, or the rule of ASCE 41-17, 10.4.2.2.1
             (`rbsdem.section.rigid_ends`); by default that rule, and 1 with springs in the nodes.
@@ -705,11 +708,13 @@ class Frame:
         """Return the groups of a case file, with drawings in place of springs where that is all."""
         drawing = self.drawing
         if drawing is None or drawing.made != self._statement:
-            # Not drawn, or changed since, as by `without`.
-            return self._statement
+            # Not drawn, or changed since, as by `without`: springs, with what they were made of.
+            drawn, sections, _ = drawings_of(self.named_kinds.values())
+            return self._state(drawn=drawn) + sections if drawn else self._statement
         cells = drawing.columns, drawing.beams
+        different = [one for own in cells for one in own.values()]
         drawn, sections, hoops = drawings_of(
-            [one for own in cells for one in own.values()], drawing.panel_hoops
+            [*different, *(member.kind for member in drawing.members)], drawing.panel_hoops
         )
         more = {
             "panel_hoops": hoops,
@@ -726,19 +731,22 @@ class Frame:
 
 
 def drawings_of(
-    cells: Sequence[Any], hoops: Ties | Literal["none"] | None
+    cells: Iterable[Any], hoops: Ties | Literal["none"] | None = None
 ) -> tuple[dict[Any, dict[str, Any]], _core.Statement, Any]:
     """Return the keys of the cells that are drawn, the groups of their sections, and of hoops.
 
     Parameters
     ----------
-    cells : sequence
-        What stands in the places of a grid.
+    cells : iterable
+        What stands in the places of a grid; kinds of members are drawn by the sections that they
+        know.
     hoops : Ties, "none" or None
         Those in the panels of nodes.
     """
     drawings: dict[Section, str] = {}
-    taken = {one.name for one in cells if isinstance(one, FrameMember)}
+    cells = list(cells)
+    kinds = [one for one in cells if isinstance(one, FrameMember)]
+    taken = {one.name for one in kinds}
 
     def name_of(section: Section) -> _core.Text:
         names = (f"section-{i}" for i in count(1))
@@ -746,7 +754,7 @@ def drawings_of(
         return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))
 
     drawn: dict[Any, dict[str, Any]] = {}
-    for one in filter(is_drawn, cells):
+    for one in filter(is_drawn, [*cells, *(kind.sections for kind in kinds)]):
         start, end = halves_of(one)
         drawn[one] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
     named: Any = hoops

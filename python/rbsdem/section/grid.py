@@ -45,6 +45,8 @@ Cells = Drawn | Mapping[Any, Drawn | None]
 CONCRETE_WEIGHT = 25e3
 #: Axial loads of columns are rounded to this part of f'c A_g, so that like columns are one kind.
 _STEP = 0.01
+#: Less than this part of a step is round-off: the column carries nothing.
+_NO_LOAD = 1e-6
 #: So are M/V of the ends of columns, to this part of their clear length.
 _SPAN_STEP = 0.05
 #: Masses that differ by more than this from those of the loads are told.
@@ -309,8 +311,8 @@ class Grid:
                 else FrameNode(name, load_y=-weight)
             )
         floors = loads[:, 0] * sum(self.bays)
-        if np.ptp(loads, axis=1).any():
-            floors = loads @ np.array(self.bays)
+        if np.ptp(loads, axis=1).any() or None in self.beams.values():
+            floors = (self._lengths() * loads).sum(axis=1)
         floors = floors / STANDARD_GRAVITY
         for i, k in self.columns:
             if (loaded := nodes.get(f"N-{i}-{k}")) is not None:
@@ -321,17 +323,25 @@ class Grid:
 
     def weights_of_beams(self) -> Array:
         """Return the weight of the beams of each floor, of their mean section [N/m]."""
-        mean = []
-        for k in range(len(self.storeys)):
-            areas = [self._area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
-            weight = CONCRETE_WEIGHT * float(np.dot(areas, self.bays))
-            mean.append(weight / max(sum(self.bays), 1.0))
-        return np.array(mean)
+        areas = np.reshape(
+            [self._area(beam) for beam in self.beams.values()], (len(self.storeys), -1)
+        )
+        lengths = self._lengths()
+        weights = CONCRETE_WEIGHT * (areas * lengths).sum(axis=1)
+        return np.asarray(weights / np.maximum(lengths.sum(axis=1), 1.0))
+
+    def _lengths(self) -> Array:
+        """Return the lengths of bays on each floor, 0 without a beam, (storeys, bays) [m]."""
+        shape = len(self.storeys), len(self.bays)
+        beams = np.reshape([beam is not None for beam in self.beams.values()], shape)
+        return np.asarray(beams * np.array(self.bays))
 
     def weights(self, walls: dict[tuple[int, int], float], heavy: bool) -> dict[str, float]:
         """Return the weights on the nodes of floors [N]: walls, and halves of the columns."""
         weights = {}
         for i, k in self.columns:
+            if not any(cell is not None for cells in self.around(i, k) for cell in cells):
+                continue
             weight = at_place(walls, i, k) or 0.0
             if heavy:
                 above = self.columns.get((i, k + 1))
@@ -419,7 +429,7 @@ class Grid:
         if not is_drawn(cell):
             return load
         step = _STEP * self._area(cell) * halves_of(cell)[0].concrete.fc
-        return _in_steps(load, step) if load > 0 else 0.0
+        return _in_steps(load, step) if load > _NO_LOAD * step else 0.0
 
     def note_on_sections(self) -> None:
         """Tell of sections that seem exchanged: columns like beams, and beams like columns."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -35,8 +35,8 @@ _ONE_PLACE = 1e-3
 #: close they depend on M/V, which differs from plane to plane.
 _SAME = 0.1
 
-#: Arguments of `Building.grid` that its drawing does not have.
-_NOT_DRAWN = ("cls", "more", "__class__")
+#: Local names that are no arguments of a building or of its drawing.
+_NO_KEYWORDS = ("cls", "self", "more", "__class__")
 
 #: Scope of the results of a building, printed with them.
 PLAN_NOTE = (
@@ -168,17 +168,16 @@ class Building(Frame):
         control_node: str = "",
         plan: PlanDrawing | None = None,
     ) -> None:
-        planes = _planes(frames, names)
+        keywords = {name: value for name, value in locals().items() if name not in _NO_KEYWORDS}
+        form = "tuples (frame, angle, arm)"
+        keywords["frames"] = tuple(_arguments.several(frames, "building: frames", form))
+        planes = _planes(keywords["frames"], names)
         floors = max(int(plane.frame.parts.floor.max(initial=0)) for plane in planes)
         if floors == 0:
             raise InputError(
                 "building: its frames have no floors; give them grids, or their nodes floors "
                 "(FrameNode(floor=...))"
             )
-        keywords: dict[str, Any] = {"frames": tuple(frames), "names": names, "centres": centres}
-        keywords |= {"floor_mass": floor_mass, "inertia": inertia, "kinematics": kinematics}
-        keywords |= {"pattern": pattern, "direction": direction, "collapse": collapse}
-        keywords |= {"damping": damping, "control_node": control_node, "plan": plan}
         put = self.__dict__.__setitem__
         put("_given", keywords)
         put("planes", planes)
@@ -216,7 +215,7 @@ class Building(Frame):
         return f"Building({len(self.storey_heights)} storeys, frames {names})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (type(self), self._given)
+        return partial(type(self), **self._given), ()
 
     @classmethod
     def grid(  # type: ignore[override]
@@ -256,8 +255,9 @@ class Building(Frame):
             Heights, and widths between axes along x and y [m].
         columns : Section, pair of Section, FrameMember, or mapping
             One for all, or by (line across x, line across y, storey), with the rules of
-            `rbsdem.Frame.grid`; None: there is no column. The depth of a section is along x; along
-            y it bends as `section.turned`. A `FrameMember` is the same in both planes.
+            `rbsdem.Frame.grid`; None: there is no column. There is no panel at a corner where
+            nothing stands, as in an L or where floors step back. The depth of a section is along x;
+            along y it bends as `section.turned`. A `FrameMember` is the same in both planes.
         beams_x, beams_y : Section, pair of Section, FrameMember, or mapping
             Beams along x and along y: one for all, or by (bay, line, storey).
         walls : mapping, optional
@@ -273,7 +273,7 @@ class Building(Frame):
         live_share : float, optional
             Part of the live load that acts.
         edge_load : float or sequence of float, optional
-            Weight of facades on the beams of the outer lines, of all floors or of each [N/m].
+            Weight of facades on beams with a panel on one side, of all floors or of each [N/m].
         self_weight : bool, optional
             Whether members of sections have their own weight, 25 kN/m3, besides that of the floors.
         mass : "from_loads", optional
@@ -295,7 +295,7 @@ class Building(Frame):
         InputError
             With what is wrong and where.
         """
-        drawing = {name: value for name, value in locals().items() if name not in _NOT_DRAWN}
+        drawing = {name: value for name, value in locals().items() if name not in _NO_KEYWORDS}
         building: Building = PlanDrawing.checked(**drawing).building(cls, more)
         return building
 
@@ -313,10 +313,19 @@ class Building(Frame):
         names = tuple(plane.name for plane in self.planes)
         return self.planes[index_of(name, names, "frame")]
 
-    @cached_property
-    def corners(self) -> Array:
-        """Corners of the smallest rectangle about all frames in plan, shape (4, 2) [m]."""
-        places = np.vstack([plane.places(np.unique(plane.frame.parts.x)) for plane in self.planes])
+    def corners(self, floor: int) -> Array:
+        """Return corners of a floor in plan, shape (corners, 2) [m].
+
+        Ends of its frames, or where a frame has no `along` those of the smallest rectangle.
+        """
+        ends = []
+        for plane in self.planes:
+            x = plane.frame.parts.x[plane.frame.parts.floor == floor]
+            if x.size:
+                ends.append(plane.places([x.min(), x.max()]))
+        places: Array = np.unique(np.round(np.vstack(ends), 9), axis=0)
+        if all(plane.along is not None for plane in self.planes):
+            return places
         (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
         return np.array([(west, south), (east, south), (east, north), (west, north)])
 
@@ -338,8 +347,8 @@ class Building(Frame):
         }
         return known.setdefault(name, inside)
 
-    def _state(self, *cells: Any, **more: Any) -> _core.Statement:
-        """Return the groups of a case file."""
+    def _state(self, *cells: Any, drawn: Any = None, **more: Any) -> _core.Statement:
+        """Return the groups of a case file, with the drawings of kinds if they are given."""
         values: dict[str, Any]
         parts: list[_core.Statement | Group] = [("frame", self._settings())]
         for plane in self.planes:
@@ -358,7 +367,7 @@ class Building(Frame):
             numbers = {k: float(v) or None for k, v in values.items()}
             parts.append(("floor", {"floor": i + 1, **numbers}))
         names = names_of([member.kind for member in self.members])
-        parts += groups_of_kinds(names)
+        parts += groups_of_kinds(names, drawn or {})
         for node in self.nodes:
             at = node.name.split(":")[0]
             parts += placed(node._groups(plane=at, rises_with=self.rises.get(node.name)))
@@ -383,7 +392,7 @@ class Building(Frame):
     def _groups(self) -> _core.Statement:
         """Return the groups of a case file, with the drawing in place of springs."""
         if self.plan is None:
-            return self._statement
+            return super()._groups()
         statement = self.plan.groups(self._settings())
         if isinstance(self.damping, Damping):
             statement += self.damping.statement()
@@ -391,17 +400,17 @@ class Building(Frame):
 
     def with_kinds(self, kinds: Mapping[str, FrameMember]) -> Building:
         """Return the building with other kinds of members in place of some of `named_kinds`."""
-        frames = []
-        for plane in self.planes:
-            names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
-            changed = {
+        names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
+
+        def changed(plane: Plane) -> Frame:
+            of_frame = {
                 name: kinds[names[stated(kind)]]
                 for name, kind in plane.frame.named_kinds.items()
                 if names.get(stated(kind)) in kinds
             }
-            more = () if plane.along is None else (plane.along,)
-            frames.append((plane.frame.with_kinds(changed), plane.angle, plane.arm, *more))
-        return self.changed(frames=frames, plan=None)
+            return plane.frame.with_kinds(of_frame)
+
+        return self._with_frames(changed)
 
     def without(self, *members: str) -> Building:
         """Return the building after the loss of members: frame:C-line-storey, and so on."""
@@ -409,30 +418,25 @@ class Building(Frame):
         for member in members:
             index_of(member, self.parts.members, "member")
             lost.setdefault(member.split(":")[0], []).append(member.split(":")[1])
-        frames = []
-        for plane in self.planes:
-            more = () if plane.along is None else (plane.along,)
-            frame = plane.frame.without(*lost.get(plane.name, ()))
-            frames.append((frame, plane.angle, plane.arm, *more))
+        return self._with_frames(lambda plane: plane.frame.without(*lost.get(plane.name, ())))
+
+    def _with_frames(self, change: Callable[[Plane], Frame]) -> Building:
+        places = [tuple(place)[1:] for place in self._given["frames"]]
+        frames = [(change(one), *at) for one, at in zip(self.planes, places, strict=True)]
         return self.changed(frames=frames, plan=None)
-
-
-def _rebuilt(kind: type[Building], keywords: dict[str, Any]) -> Building:
-    return kind(**keywords)
 
 
 def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
     """Return the frames in their places, with names."""
     planes: list[Plane] = []
-    tuples = list(_arguments.several(frames, "building: frames", "tuples (frame, angle, arm)"))
-    if not tuples:
+    if not frames:
         raise InputError("building: it has no frames; give tuples (frame, angle, arm)")
-    if names is not None and len(names) != len(tuples):
+    if names is not None and len(names) != len(frames):
         raise InputError(
-            f"building: {len(names)} names for {len(tuples)} frames; give one for each"
+            f"building: {len(names)} names for {len(frames)} frames; give one for each"
         )
     counts: dict[str, int] = {}
-    for i, place in enumerate(tuples):
+    for i, place in enumerate(frames):
         if not (isinstance(place, tuple) and len(place) in (3, 4) and isinstance(place[0], Frame)):
             raise InputError(
                 f"building: frames[{i}] = {_arguments.shown(place)} must be a tuple "
@@ -486,7 +490,7 @@ def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
     for name, x, y, floor in zip(
         parts.nodes, parts.x.tolist(), parts.y.tolist(), parts.floor.tolist(), strict=True
     ):
-        if name not in ends and floor == 0:
+        if name not in ends:
             continue
         node, mass = stated_nodes.get(name, FrameNode(name)), grid.get(name, 0.0)
         support = frame.supports.get(name, "free")
@@ -525,16 +529,16 @@ def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
 
 def _grid_masses(frame: Frame) -> dict[str, float]:
     """Return the masses of floors at the nodes of a grid, by the widths beside them."""
-    bays: Any = frame.bays or ()
-    storeys: Any = frame.storeys or ()
-    masses: Any = frame.floor_mass
-    widths = np.array([0.0, *bays]) + np.array([*bays, 0.0])
-    shares = widths / widths.sum() if bays else np.ones(1)
-    return {
-        f"N-{line + 1}-{floor + 1}": float(share * masses[min(floor, len(masses) - 1)])
-        for floor in range(len(storeys))
-        for line, share in enumerate(shares)
-    }
+    storeys, bays = len(frame.storeys or ()), np.array(frame.bays or ())  # type: ignore[arg-type]
+    lines = bays.size + 1
+    # Nodes of the grid come first; where it steps back there is none.
+    there = frame.parts.floor[lines : lines * (storeys + 1)].reshape(storeys, lines) > 0
+    widths = bays * (there[:, :-1] & there[:, 1:])
+    beside = np.pad(widths, ((0, 0), (1, 0))) + np.pad(widths, ((0, 0), (0, 1)))
+    beside = np.where(widths.any(axis=1, keepdims=True), beside, there)
+    masses = np.broadcast_to(frame.floor_mass, storeys)[:, None]
+    shares = beside / np.maximum(beside.sum(axis=1, keepdims=True), 1e-9) * masses
+    return dict(zip(frame.parts.nodes[lines:], shares.ravel().tolist(), strict=False))
 
 
 def _inertia_of(planes: Sequence[Plane], laid: Sequence[Any], centres: Array) -> Array:

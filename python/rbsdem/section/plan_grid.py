@@ -165,6 +165,36 @@ class PlanDrawing:
         cells = self.beams_x if line.along == "x" else self.beams_y
         return at_place(cells, bay, line.number, storey)
 
+    def panel(self, i: int, j: int, floor: int) -> bool:
+        """Return whether a floor has a panel in a bay along x and one along y.
+
+        It has none beside a crossing of lines where nothing stands, as outside of a plan that is no
+        rectangle.
+        """
+        if not (1 <= i <= len(self.bays_x) and 1 <= j <= len(self.bays_y)):
+            return False
+        return all(self._is_joined(at, to, floor) for at in (i, i + 1) for to in (j, j + 1))
+
+    def _is_joined(self, i: int, j: int, floor: int) -> bool:
+        """Return whether a column or a beam ends where two lines cross."""
+        storeys = range(floor, min(floor + 1, len(self.storeys)) + 1)
+        if any(self.column(Line("x", j), i, k) is not None for k in storeys):
+            return True
+        crossing = ((Line("x", j), i), (Line("y", i), j))
+        return any(
+            self.beam(line, bay, floor) is not None
+            for line, at in crossing
+            for bay in (at - 1, at)
+            if 1 <= bay <= len(self.bays(line.along))
+        )
+
+    def beside(self, line: Line, bay: int, floor: int) -> int:
+        """Return how many panels a beam has beside it."""
+        places = [(bay, line.number - 1), (bay, line.number)]
+        if line.along == "y":
+            places = [place[::-1] for place in places]
+        return sum(self.panel(*place, floor) for place in places)
+
     def column(self, line: Line, place: int, storey: int) -> Any:
         """Return what stands in a place of columns, as it bends in the plane of a line.
 
@@ -201,9 +231,9 @@ class PlanDrawing:
             weights.put_panels(k, dead + self.live_share * live)
         for line in self.lines:
             columns, beams, _ = self.cells(line)
-            outer = line.number in (1, len(self.bays("y" if line.along == "x" else "x")) + 1)
             for (i, k), beam in beams.items():
-                load = self.edge_load[k - 1] if outer and beam is not None else 0.0
+                facade = beam is not None and self.edge_load[k - 1]
+                load = self.edge_load[k - 1] if facade and self.beside(line, i, k) == 1 else 0.0
                 if self.self_weight:
                     load += CONCRETE_WEIGHT * _area(beam)
                 weights.put_beam(line, i, k, load)
@@ -246,7 +276,7 @@ class PlanDrawing:
             }
             parts.append(("floor", {"floor": i + 1} | of_floor))
         names = names_of([kind for kind in placed if isinstance(kind, FrameMember)])
-        parts += groups_of_kinds(names)
+        parts += groups_of_kinds(names, drawn)
 
         def put(group: str, cell: Any, **place: Any) -> None:
             keys = {"kind": _core.Text("none")} if cell is None else drawn.get(cell)
@@ -375,31 +405,37 @@ class Weights:
         its part to the others.
         """
         d = self.drawing
+        for i, j, (area, x, y, second) in self.panels(storey) if load else ():
+            a, b = d.bays_x[i - 1], d.bays_y[j - 1]
+            sides = [(Line("x", j), i, a), (Line("x", j + 1), i, a)]
+            sides += [(Line("y", i), j, b), (Line("y", i + 1), j, b)]
+            short, long = sorted((a, b))
+            parts = [
+                0.25 * short * (short if length <= short else 2.0 * long - short)
+                for _, _, length in sides
+            ]
+            kept = [
+                part if d.beam(line, bay, storey) is not None else 0.0
+                for part, (line, bay, _) in zip(parts, sides, strict=True)
+            ]
+            if not any(kept):
+                raise InputError(
+                    f"building: the panel in bay {i} along x and bay {j} along y of floor "
+                    f"{storey} has a load and no beam around it; give one of its beams"
+                )
+            for part, (line, bay, length) in zip(kept, sides, strict=True):
+                share = part / sum(kept) * area
+                self.beams[line][storey - 1, bay - 1] += load * share / length
+            self.of_floor[storey - 1].append((load * area, x, y, second))
+
+    def panels(self, storey: int) -> Iterator[tuple[int, int, tuple[float, float, float, float]]]:
+        """Yield bays along x and y, and area, centre and second moment of the panels of a floor."""
+        d = self.drawing
         for i, a in enumerate(d.bays_x, 1):
             for j, b in enumerate(d.bays_y, 1):
-                sides = [(Line("x", j), i, a), (Line("x", j + 1), i, a)]
-                sides += [(Line("y", i), j, b), (Line("y", i + 1), j, b)]
-                short, long = sorted((a, b))
-                parts = [
-                    0.25 * short * (short if length <= short else 2.0 * long - short)
-                    for _, _, length in sides
-                ]
-                kept = [
-                    part if d.beam(line, bay, storey) is not None else 0.0
-                    for part, (line, bay, _) in zip(parts, sides, strict=True)
-                ]
-                if not load:
-                    continue
-                if not any(kept):
-                    raise InputError(
-                        f"building: the panel in bay {i} along x and bay {j} along y of floor "
-                        f"{storey} has a load and no beam around it; give one of its beams"
-                    )
-                for part, (line, bay, length) in zip(kept, sides, strict=True):
-                    share = part / sum(kept) * a * b
-                    self.beams[line][storey - 1, bay - 1] += load * share / length
-                centre = d.places("x")[i - 1] + 0.5 * a, d.places("y")[j - 1] + 0.5 * b
-                self.of_floor[storey - 1].append((load * a * b, *centre, (a**2 + b**2) / 12.0))
+                if d.panel(i, j, storey):
+                    centre = d.places("x")[i - 1] + 0.5 * a, d.places("y")[j - 1] + 0.5 * b
+                    yield i, j, (a * b, *centre, (a**2 + b**2) / 12.0)
 
     def put_beam(self, line: Line, bay: int, storey: int, load: float) -> None:
         """Put a load on a beam [N/m]."""
@@ -428,20 +464,21 @@ class Weights:
         """Return masses, centres in plan and rotary inertia of the floors.
 
         Of loads the masses are where these are; masses that are given are spread as the loads, or
-        where there are none evenly over the rectangle of the grid.
+        where there are none evenly over the panels.
         """
         d = self.drawing
         lengths = np.array([sum(d.bays_x), sum(d.bays_y)])
         rows = []
+        whole = (1.0, *(0.5 * lengths), (lengths**2).sum() / 12.0)
         for i, weights in enumerate(self.of_floor):
-            weight, x, y, second = np.array(weights or [(0.0, 0.0, 0.0, 0.0)]).T
-            total, centre, spread = float(weight.sum()), 0.5 * lengths, (lengths**2).sum() / 12.0
-            if total > 0.0:
-                centre = np.array([weight @ x, weight @ y]) / total
-                spread = weight @ (second + (x - centre[0]) ** 2 + (y - centre[1]) ** 2) / total
+            areas = [panel for _, _, panel in self.panels(i + 1)]
+            weight, x, y, second = np.array(weights or areas or [whole]).T
+            total = float(weight.sum())
+            centre = np.array([weight @ x, weight @ y]) / total
+            spread = weight @ (second + (x - centre[0]) ** 2 + (y - centre[1]) ** 2) / total
             mass = floor_mass[i] if floor_mass else 0.0
             if rule is not None:
-                mass = total / STANDARD_GRAVITY
+                mass = total / STANDARD_GRAVITY if weights else 0.0
             rows.append((mass, *(centre + d.eccentricity * lengths), mass * spread))
         table = np.array(rows)
         return table[:, 0], table[:, 1:3], table[:, 3]

@@ -227,7 +227,7 @@ def _of_building(result: BuildingResult) -> Iterator[Sheet]:
     yield Sheet("Building", f"{result.scope_note} {whole}", shapes, _summary(result.summary))
     for name, frame in result.frames.items():
         # Its inputs are those of the building, and so are its rows.
-        for sheet in list(_of_frame(frame))[1:-1]:
+        for sheet in list(_of_response(frame))[:-1]:
             yield replace(sheet, heading=f"{name} {sheet.heading}")
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
 
@@ -246,6 +246,10 @@ def _of_plan(building: Building) -> Sheet:
 def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     """Yield the sheets of a response of a frame."""
     yield _of_structure(result.frame)
+    yield from _of_response(result)
+
+
+def _of_response(result: FrameResult) -> Iterator[Sheet]:
     largest = int(np.abs(result.displacement).argmax())
     whole = "Displacements, hinges and forces at the largest displacement of the top."
     shapes = (

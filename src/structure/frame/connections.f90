@@ -83,7 +83,7 @@ contains
       end do
    end function end_nodes
 
-   !> Hold the base nodes of a grid whose columns are left out: nothing stands on them.
+   !> Hold the nodes of a grid whose members are left out: nothing is there.
    subroutine hold_idle(nodes, members, grid_nodes)
       type(frame_node), intent(inout) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
@@ -93,7 +93,7 @@ contains
 
       has_member = end_nodes(nodes, members)
       do i = 1, size(nodes)
-         if (nodes(i)%storey /= 0 .or. i > grid_nodes .or. has_member(i)) cycle
+         if (i > grid_nodes .or. has_member(i)) cycle
          nodes(i)%held = .true.
          nodes(i)%ground%rule = ''
       end do
@@ -141,7 +141,7 @@ contains
                                  ' are at one place; move one of them, use one in place of both, or '// &
                                  'tie them by moves_with')
             end do
-            if (.not. has_member(i) .and. (node%storey /= 0 .or. i > grid_nodes)) then
+            if (.not. has_member(i) .and. (i > grid_nodes .or. any(node%mass > 0.0_wp))) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
             else if (has_member(i) .and. .not. is_carried(i) .and. &
                      .not. all(node%held .or. node%ground%rule /= '')) then

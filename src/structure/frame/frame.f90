@@ -269,6 +269,8 @@ contains
       !> (unknowns)
       real(wp), intent(in) :: x(:)
 
+      drift = 0.0_wp
+      if (.not. self%plan%is_there(plane, storey)) return
       drift = sum(self%plan%share(:, plane, storey)*self%plan%motion(storey, x))
       if (storey > 1) drift = drift - &
                               sum(self%plan%share(:, plane, storey - 1)*self%plan%motion(storey - 1, x))

@@ -78,7 +78,8 @@ contains
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
-      integer :: bays, i, known, l, lines, s, storeys
+      integer :: bays, i, j, known, l, lines, s, storeys
+      logical, allocatable :: is_joined(:)
 
       known = messages%count
       storeys = 0
@@ -94,21 +95,7 @@ contains
          if (bays > 0) call messages%add('frame: bays need storeys; give their heights')
          return
       end if
-      i = 0
-      do s = 0, storeys
-         do l = 1, lines
-            i = i + 1
-            associate (node => self%node(i))
-               node%name = 'N-'//to_text(l)//'-'//to_text(s)
-               node%storey = s
-               if (l > 1) node%x = sum(record%bays(:l - 1))
-               node%y = sum(record%storeys(:s))
-               if (s == 0) call hold(node, record%base)
-               if (s > 0) call put_mass(node, record, s, l, lines)
-               if (s > 0 .and. l > 1 .and. record%diaphragm) node%like = i - l + 1
-            end associate
-         end do
-      end do
+      allocate (is_joined(lines))
       do s = 1, storeys
          do l = 1, lines
             call add_cell(self, record, 'C', l, s, lines, [(s - 1)*lines + l, s*lines + l])
@@ -118,6 +105,32 @@ contains
          do l = 1, bays
             call add_cell(self, record, 'B', l, s, bays, [s*lines + l, s*lines + l + 1])
          end do
+      end do
+      i = 0
+      do s = 0, storeys
+         do l = 1, lines
+            i = i + 1
+            associate (node => self%node(i))
+               node%name = 'N-'//to_text(l)//'-'//to_text(s)
+               if (l > 1) node%x = sum(record%bays(:l - 1))
+               node%y = sum(record%storeys(:s))
+               is_joined(l) = any(record%member%from == node%name .or. record%member%to == node%name)
+               do j = 1, self%members
+                  is_joined(l) = is_joined(l) .or. any(self%member(j)%node == i)
+               end do
+               ! Where a frame steps back nothing is there.
+               node%storey = merge(s, -1, s == 0 .or. is_joined(l))
+               if (s == 0) call hold(node, record%base)
+            end associate
+         end do
+         if (s == 0) cycle
+         associate (first => i - lines + findloc(is_joined, .true., dim=1))
+            call put_mass(self%node(i - lines + 1:i), record, s, is_joined)
+            if (record%diaphragm .and. any(is_joined)) then
+               where (is_joined) self%node(i - lines + 1:i)%like = first
+               self%node(first)%like = 0
+            end if
+         end associate
       end do
       self%grid_members = self%members
       ! A wrong group has its message already, and names no cell.
@@ -225,26 +238,29 @@ contains
       end subroutine refuse
    end subroutine check_cells
 
-   !> Shares of the mass of a floor by the widths of the bays beside a node.
-   subroutine put_mass(node, record, storey, line, lines)
-      type(frame_node), intent(inout) :: node
+   !> Shares of the mass of a floor by the widths of the bays beside its nodes.
+   subroutine put_mass(node, record, storey, is_joined)
+      !> All of the floor
+      type(frame_node), intent(inout) :: node(:)
       type(frame_record), intent(in) :: record
-      integer, intent(in) :: storey, line, lines
-      real(wp) :: mass, part
+      integer, intent(in) :: storey
+      logical, intent(in) :: is_joined(:)
+      real(wp) :: mass, part(size(node)), width(size(node) - 1)
       integer :: i
 
       mass = 0.0_wp
       do i = 1, size(record%floor)
          if (any(record%floor(i)%floor == [0, storey])) mass = record%floor(i)%mass
       end do
-      part = 1.0_wp
-      if (lines > 1) then
-         part = 0.0_wp
-         if (line > 1) part = record%bays(line - 1)
-         if (line < lines) part = part + record%bays(line)
-         part = part/(2.0_wp*sum(record%bays))
+      width = 0.0_wp
+      if (size(width) > 0) width = merge(record%bays, 0.0_wp, is_joined(:size(width)) .and. is_joined(2:))
+      if (sum(width) > 0.0_wp) then
+         part = ([0.0_wp, width] + [width, 0.0_wp])/(2.0_wp*sum(width))
+      else
+         part = merge(1.0_wp, 0.0_wp, is_joined)/max(count(is_joined), 1)
       end if
-      node%mass(:2) = mass*part
+      node%mass(1) = mass*part
+      node%mass(2) = mass*part
    end subroutine put_mass
 
    !> A column or a beam of the grid.

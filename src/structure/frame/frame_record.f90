@@ -68,6 +68,12 @@ module rbs_structure_frame_frame_record
       real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset
       character(len=12) :: interior = 'elastic', ends = 'continuous'
       logical :: after_dead_load = .false.
+      !> What its springs were made of, for what Python judges: drawings of its two halves, M/V of their
+      !> strength in shear, and what the layers at the foot of a wall stand for
+      character(len=name_length) :: section = '', section_to = ''
+      real(wp), allocatable :: shear_spans(:)
+      integer :: core_layers = 0
+      real(wp) :: concrete_length = unset, bar_length = unset
    contains
       procedure :: visit => visit_kind
    end type kind_record
@@ -361,7 +367,7 @@ contains
       call v%key('live_floor_load', self%live_floor_load, 'Pa', not_negative, 'of a grid in plan: live '// &
                  'load on them, of which live_share acts')
       call v%key('edge_load', self%edge_load, 'N/m', not_negative, 'of a grid in plan: weight of facades '// &
-                 'on the beams of the outer lines')
+                 'on the beams with a panel on one side')
    end subroutine visit_floor
 
    subroutine visit_node_load(self, v)
@@ -406,6 +412,17 @@ contains
                   'carries axial force alone', 'continuous pinned')
       call v%key('after_dead_load', self%after_dead_load, 'whether it is built when the dead load acts '// &
                  'already, and carries none of it')
+      call v%word('section', self%section, 'drawing that its springs were made of, for limit states and '// &
+                  'acceptance; the springs that are given count')
+      call v%word('section_to', self%section_to, 'drawing of its second half, if it is another one')
+      call v%key('shear_spans', self%shear_spans, 'm', above_zero, 'M/V of the strength of its shear '// &
+                 'springs: at its start with y > 0 in tension and in compression, and at its end', 4)
+      call v%key('core_layers', self%core_layers, '', not_negative, 'at the foot of a wall: layers of '// &
+                 'confined concrete, the first; layers of bars are the last')
+      call v%key('concrete_length', self%concrete_length, 'm', above_zero, 'length over which these '// &
+                 'layers of concrete deform', optional=.true.)
+      call v%key('bar_length', self%bar_length, 'm', above_zero, 'length over which those of bars do', &
+                 optional=.true.)
    end subroutine visit_kind
 
    subroutine visit_infill(self, v)

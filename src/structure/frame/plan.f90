@@ -17,6 +17,8 @@ module rbs_structure_frame_plan
       !> cos alpha, sin alpha and r [m] of the planes about the centre of each floor (3, planes, floors);
       !> none: it is a planar frame
       real(wp), allocatable :: share(:, :, :)
+      !> Whether a plane has nodes on a floor (planes, floors)
+      logical, allocatable :: is_there(:, :)
       !> Which of U, V and Theta no plane resists: the floors do not move in this way
       logical :: held(3) = .false.
       !> Direction of the lateral load, as the share of a plane through the centres of mass
@@ -63,21 +65,19 @@ contains
    end function cosine_sine
 
    !> Hold what no plane resists. Which floor is free to move, or to turn, in another way; 0: none.
-   pure subroutine hold_free(self, is_there, free)
+   pure subroutine hold_free(self, free)
       class(floor_plan), intent(inout) :: self
-      !> Whether a plane has nodes on a floor (planes, floors)
-      logical, intent(in) :: is_there(:, :)
       integer, intent(out) :: free
-      real(wp) :: row(3, size(is_there, 1)), part(3), size_of_arms
+      real(wp) :: row(3, size(self%is_there, 1)), part(3), size_of_arms
       integer :: i, j, pivot
 
       self%held = [(.not. any(abs(self%share(i, :, :)) > no_share*maxval(abs(self%share(i, :, :))) .and. &
-                              is_there), i=1, 3)]
-      do free = 1, size(is_there, 2)
+                              self%is_there), i=1, 3)]
+      do free = 1, size(self%is_there, 2)
          row = self%share(:, :, free)
          size_of_arms = maxval(abs(row(3, :)))
          if (size_of_arms > 0.0_wp) row(3, :) = row(3, :)/size_of_arms
-         where (spread(.not. is_there(:, free), 1, 3)) row = 0.0_wp
+         where (spread(.not. self%is_there(:, free), 1, 3)) row = 0.0_wp
          ! Each direction that moves takes a plane out, and its part of the others.
          do i = 1, 3
             if (self%held(i)) cycle

@@ -105,7 +105,6 @@ contains
       integer :: i, j, free
       real(wp) :: along(2)
       real(wp), allocatable :: centre(:, :)
-      logical, allocatable :: is_there(:, :)
 
       associate (floors => max(0, maxval(nodes%storey)))
          if (floors == 0) then
@@ -146,12 +145,12 @@ contains
                                            (centre(1, j)*along(2) - centre(2, j)*along(1))]
             end do
          end do
-         is_there = reshape([((any(nodes%plane == i .and. nodes%storey == j), &
-                               i=1, size(record%plane)), j=1, floors)], [size(record%plane), floors])
+         plan%is_there = reshape([((any(nodes%plane == i .and. nodes%storey == j), &
+                                    i=1, size(record%plane)), j=1, floors)], [size(record%plane), floors])
       end associate
       plan%direction(:2) = cosine_sine(record%direction)
       plan%by_nodes = record%pattern == 'nodes'
-      call plan%hold_free(is_there, free)
+      call plan%hold_free(free)
       if (free > 0) then
          call messages%add('floor '//to_text(free)//': the planes leave it free to turn, or to move; '// &
                            'give planes in another direction, or at other distances from the centre of mass')
