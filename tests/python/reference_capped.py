@@ -68,7 +68,7 @@ class Backbone:
                 bends.append(at + (self.f_res - f) / k)
         if math.isinf(self.d_u):
             return whole, bends
-        rupture, top = self.f_y / self.d_y, whole(self.d_u)
+        rupture, top = 16 / 15 * self.f_y / self.d_y, whole(self.d_u)
 
         def torn(d: float) -> float:
             return whole(d) if d <= self.d_u else max(top - rupture * (d - self.d_u), 0.0)

@@ -377,6 +377,16 @@ def test_a_static_path_that_ends_has_a_reason(case: int, reason: str) -> None:
         rbsdem.cyclic(made, displacement=drifts(rng, made))
 
 
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_a_spring_that_breaks_beside_a_like_one_that_unloads_keeps_the_path() -> None:
+    """Both ends of a beam: with one slope down and up the line of the beam would be upright."""
+    rng = np.random.default_rng((zlib.crc32(b"capped"), 77, 12))
+    made = frame(rng, "capped")
+    run = rbsdem.cyclic(made, displacement=drifts(rng, made))
+    assert run.summary["relative_energy_residual"] < 1e-9
+    assert sections_off(run) < 1e-9
+
+
 def under(case: int, load: float) -> Frame:
     """Return a frame of layered joints under a load of its beams [N/m]."""
     return replace(frame(np.random.default_rng(case), "layered"), beam_load=load)

@@ -120,10 +120,13 @@ contains
       end function limit
    end subroutine draw
 
-   !> Cut the lines at d_u; from there the force drops to zero with the slope of the line from zero to yield.
+   !> Cut the lines at d_u; from there the force drops to zero, a little more steeply than the line from zero
+   !> to yield rises: with the same slope a like spring in the same member, which unloads, would make the line
+   !> of the member upright.
    pure subroutine end_at_rupture(self, given)
       class(backbone_side), intent(inout) :: self
       type(backbone_parameters), intent(in) :: given
+      real(wp), parameter :: drop = 15.0_wp/16.0_wp
       real(wp) :: f
 
       f = self%force(given%d_u)
@@ -133,7 +136,7 @@ contains
          self%last = self%last - 1
       end do
       call self%add_corner(given%d_u, f)
-      call self%add_corner(given%d_u + f*(given%d_y/given%f_y), 0.0_wp)
+      call self%add_corner(given%d_u + drop*f*(given%d_y/given%f_y), 0.0_wp)
    end subroutine end_at_rupture
 
    pure subroutine add_corner(self, d, f)
