@@ -46,7 +46,8 @@ def model(storeys: int) -> int:
         if k == 0:
             ops.fix(number, *[1] * 6)
     for at, kind in enumerate((COLUMN, BEAM)):
-        weak = 1e-9 * E * kind["inertia"]
+        # Members need some stiffness in torsion and across their plane; 1e-9 is seen in records.
+        weak = 1e-11 * E * kind["inertia"]
         ops.uniaxialMaterial("Elastic", 10 * at + 1, E * kind["area"])
         ops.uniaxialMaterial(
             "Steel01", 10 * at + 2, kind["yield_moment"], E * kind["inertia"], HARDENING
