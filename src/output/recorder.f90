@@ -80,7 +80,7 @@ contains
                                self%channels%before('moment_to'), self%channels%before('moment'))
       end if
       call self%channels%fill(structure, response, springs, deformation, self%row)
-      call self%spans%update(self%row)
+      if (self%spans%watches) call self%spans%update(self%row)
       call self%record(self%row, error)
    end subroutine keep
 

@@ -31,6 +31,8 @@ module rbs_output_spans
    end type span_type
 
    type :: span_watch
+      !> Whether there is a span to watch
+      logical :: watches = .false.
       type(span_type), allocatable, private :: span(:)
       !> Span of each flexural spring, 0 for none; of a member with layers they alone have one
       integer, allocatable, private :: owner(:)
@@ -75,6 +77,7 @@ contains
             where (of == i .and. (is_layer .or. .not. any(of == i .and. is_layer))) self%owner = j
          end do
       end select
+      self%watches = size(self%span) > 0
    end subroutine start
 
    !> Take a row into account.
@@ -95,7 +98,6 @@ contains
             s%place = share
          end associate
       end do
-      if (size(self%span) == 0) return
       do i = 1, size(self%owner)
          if (self%owner(i) == 0) cycle
          associate (s => self%span(self%owner(i)))

@@ -403,7 +403,8 @@ class PeakOriented(Spring):
     f_res : float, optional
         Residual force, at which softening ends [N]; from 0 to below `f_y`.
     d_u : float, optional
-        Deformation beyond which the force falls to zero [m]. By default it never does.
+        Deformation beyond which the force falls to zero with the slope -16/15 f_y/d_y [m]. By
+        default it never does.
     d_c, f_c : float, optional
         Cracking point [m], [N]. With the default of 0 the spring is elastic up to yield.
     b0 : float, optional

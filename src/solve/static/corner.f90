@@ -171,23 +171,23 @@ contains
       !> Springs that are blocked on their lines for the present rates, and joints on their planes. Springs
       !> whose rates are round-off rest: beside a storey without strength nothing else moves.
       subroutine find_stopped()
-         real(wp) :: energy(path%moving), least
+         real(wp) :: least
          integer :: i, count
 
          call find_blocked(path%springs, path%rate(:path%moving), blocked, count)
          springs_blocked = 0
-         if (count > 0) then
-            energy = path%structure%initial_stiffness(:path%moving)*path%rate(:path%moving)**2
-            least = same_rate**2*maxval(energy)
-         end if
-         do i = 1, count
-            if (energy(blocked(i)) < least) then
-               path%rate(blocked(i)) = 0.0_wp
-            else
-               springs_blocked = springs_blocked + 1
-               blocked(springs_blocked) = blocked(i)
-            end if
-         end do
+         associate (initial => path%structure%initial_stiffness(:path%moving), &
+                    rate => path%rate(:path%moving))
+            if (count > 0) least = same_rate**2*maxval(initial*rate**2)
+            do i = 1, count
+               if (initial(blocked(i))*rate(blocked(i))**2 < least) then
+                  rate(blocked(i)) = 0.0_wp
+               else
+                  springs_blocked = springs_blocked + 1
+                  blocked(springs_blocked) = blocked(i)
+               end if
+            end do
+         end associate
          stopped = springs_blocked
          if (path%springs%axial_load_varies) call update_layer_branches(stopped)
       end subroutine find_stopped

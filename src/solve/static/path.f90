@@ -290,7 +290,7 @@ contains
             task%summary%lost_joint = self%structure%location(crushed_joint)%index
             call fall_of(self%springs, crushed_joint, task%summary%fall)
          end if
-         falls = task%summary%has_fallen()
+         falls = crushed_joint > 0 .or. task%summary%fallen_member > 0
          if (falls) then
             ! This ends the path.
             if (allocated(failure)) deallocate (failure)
