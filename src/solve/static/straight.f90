@@ -205,16 +205,22 @@ contains
       self%lost_digits = self%equilibrium%lost_digits
       self%is_stable = self%equilibrium%is_stable
       if (direction < 0) self%rate = -self%rate
-      if (is_spent(self)) call rest(self%moving, self%structure%initial_stiffness, self%rate)
+      if (is_spent(self)) call rest(self%moving, self%structure%initial_stiffness, &
+                                    self%equilibrium%force_rate, self%rate)
    end subroutine solve_line
 
-   !> Springs whose rates are round-off rest: beside a storey without strength nothing else moves.
-   pure subroutine rest(n, initial, rate)
+   !> Springs whose rates are round-off rest: beside a storey without strength nothing else moves. What has
+   !> stiffness left has none of them: a spring that is stiff beside others carries their force.
+   pure subroutine rest(n, initial, stiffness, rate)
       integer, intent(in) :: n
-      real(wp), intent(in) :: initial(n)
+      !> Initial stiffnesses, and that of the structure under the displacement that is driven [N/m]
+      real(wp), intent(in) :: initial(n), stiffness
       real(wp), intent(inout) :: rate(n)
+      real(wp) :: largest
 
-      where (initial*rate**2 < same_rate**2*maxval(initial*rate**2)) rate = 0.0_wp
+      largest = maxval(initial*rate**2)
+      if (abs(stiffness) > same_rate*largest) return
+      where (initial*rate**2 < same_rate**2*largest) rate = 0.0_wp
    end subroutine rest
 
    !> Begin the line that was found: where it starts and where it ends. Where the control may turn, its last
