@@ -193,25 +193,25 @@ contains
    pure subroutine factor_wide(n, width, band, factored, first, triangle, inverse, negative)
       integer, intent(in) :: n, width
       real(wp), intent(in) :: band(width + 1, n)
-      !> Band that was factored before, replaced by this one; the first column of each row, of all bands so
-      !> far; the factor: 1/D and L, row by row, and 1/D alone
+      !> Band that was factored before, replaced by this one; the first column of each row; the factor: 1/D
+      !> and L, row by row, and 1/D alone. All follow from this band: a path that is resumed has the same bits
       real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), inverse(n)
       integer, intent(inout) :: first(n)
       integer, intent(out) :: negative
       real(wp) :: row(n), pivot
       integer :: changed, i, j, k
 
-      changed = n + 1
-      do j = n, 1, -1
-         if (all(abs(band(:, j) - factored(:, j)) <= 0.0_wp)) cycle
-         changed = j
-         factored(:, j) = band(:, j)
-         do i = j, min(j + width, n)
-            if (abs(band(1 + i - j, j)) > 0.0_wp) first(i) = min(first(i), j)
-         end do
+      do changed = 1, n
+         if (.not. all(abs(band(:, changed) - factored(:, changed)) <= 0.0_wp)) exit
       end do
+      factored(:, changed:) = band(:, changed:)
       negative = count(.not. inverse(:changed - 1) > 0.0_wp)
       do i = changed, n
+         do k = max(1, i - width), i - 1
+            if (abs(band(1 + i - k, k)) > 0.0_wp) exit
+         end do
+         first(i) = k
+         triangle(2:1 + width - i + k, i) = 0.0_wp
          do k = first(i), i - 1
             row(k) = band(1 + i - k, k)
          end do

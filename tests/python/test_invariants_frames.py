@@ -663,6 +663,13 @@ def test_cut_and_restart(rng: Rng) -> float:
     return apart(rest, rows_of(whole, slice(at, None)))
 
 
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_a_factor_knows_nothing_of_earlier_bands() -> None:
+    """Rows of a band begin where its own elements do, not those of earlier ones."""
+    rng = np.random.default_rng((zlib.crc32(b"test_cut_and_restart"), 1503, 12))
+    assert test_cut_and_restart.outcome.judge(rng) == 0.0
+
+
 @relation(40, judged=0.5)
 def test_points_on_the_way(rng: Rng) -> float:
     """Seven points on each way change no bit of its end."""
