@@ -205,6 +205,8 @@ def test_two_at_one_part(tmp_path: Path) -> None:
         file.execute("delete from runs")
         with pytest.raises(InputError, match=r"another process is at work on .*part-2-of-3"):
             run(tmp_path, shard=(2, 3))
+        # Another process has made its file, and not yet the table in it.
+        (tmp_path / "part-3-of-3.sqlite").touch()
         assert run(tmp_path, shard=(1, 3)).resumed == 8
     assert "" not in run(tmp_path).status
 

@@ -164,7 +164,9 @@ def _connection(path: Path, patience: float = _PATIENCE) -> sqlite3.Connection:
 
 def _rows(path: Path, query: str) -> list[Any]:
     with _told(path), closing(_connection(path)) as file:
-        return file.execute(query).fetchall()
+        # Another process may have made the file, and not yet its table.
+        is_new = file.execute("select count(*) from sqlite_master").fetchone() == (0,)
+        return [] if is_new else file.execute(query).fetchall()
 
 
 @contextmanager
