@@ -97,10 +97,12 @@ class Store:
             If the disk is full, or fails: what was committed is kept.
         """
         with _told(self._path), closing(_connection(self._path, 0.0)) as self._file:
-            self._file.execute(_TABLE)
-            # Others may read until the moment of a commit.
+            # Others may read until the moment of a commit, which waits for them.
             self._file.execute("begin immediate")
             self._file.execute(f"pragma busy_timeout = {1000 * _PATIENCE:.0f}")
+            self._file.execute(_TABLE)
+            self._file.execute("commit")
+            self._file.execute("begin immediate")
             self._written = time.monotonic()
             try:
                 yield
