@@ -193,7 +193,7 @@ def threads(runs: int, with_dask: bool) -> list[Row]:
     if with_dask:
         from distributed import Client, LocalCluster  # noqa: PLC0415
 
-        options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+        options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0"}
         with LocalCluster(**options) as cluster, Client(cluster) as client:
             run(640, client=client)
             pairs = [(run(runs // 10, client=client), run(runs // 10, jobs=2)) for _ in range(3)]

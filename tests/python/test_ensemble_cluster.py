@@ -25,7 +25,7 @@ GIVEN = {"scales": np.linspace(0.1, 3.0, 20), "method": "rk4", "dt": 1e-4}
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0"}
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster):
         yield cluster
 
