@@ -278,21 +278,27 @@ class Made:
         Parts of a frame, and notes on the structure, a line each.
     values : ndarray
         Numbers of these parts.
+    is_part : bool
+        Whether it is a frame that others in its building may hold: it is laid out, and neither
+        checked as a whole nor solved under its dead load until it is asked for alone.
     """
 
-    def __init__(self, statement: Statement) -> None:
-        self.statement = statement
-        self.text, self.values, _, _, self._kept = evaluate("check_structure", statement)
+    def __init__(self, statement: Statement, is_part: bool = False) -> None:
+        self.statement, self.is_part = statement, is_part
+        what = "lay_out" if is_part else "check_structure"
+        self.text, self.values, _, _, self._kept = evaluate(what, statement)
 
     @property
     def address(self) -> NDArray[np.int32]:
         """Where it is, for Fortran."""
+        if self.is_part:
+            vars(self).update(vars(Made(self.statement)))
         assert self._kept is not None
         return self._kept.answer
 
-    def __reduce__(self) -> tuple[type[Made], tuple[Statement]]:
+    def __reduce__(self) -> tuple[type[Made], tuple[Statement, bool]]:
         """Make it anew in another process."""
-        return Made, (self.statement,)
+        return Made, (self.statement, self.is_part)
 
 
 def version() -> str:

@@ -62,7 +62,7 @@ contains
          answer%value = [largest_small, much, largest_ground]
       case ('check_spring', 'spring_response')
          call evaluate_spring()
-      case ('check_structure', 'modes', 'matrices')
+      case ('check_structure', 'lay_out', 'modes', 'matrices')
          call evaluate_structure(request, answer)
       case ('cyclic', 'time_history')
          call run_analysis(request, control, answer)
@@ -152,7 +152,7 @@ contains
          structure => request%made%structure
       else
          call structure_from_statements(request%statement, request%number, answer%structure, answer%before, &
-                                        case, answer%error)
+                                        case, answer%error, is_part=request%what == 'lay_out')
          if (allocated(answer%error)) return
          structure => answer%structure
       end if
@@ -162,10 +162,10 @@ contains
          frame => structure
       end select
       select case (request%what)
-      case ('check_structure')
+      case ('check_structure', 'lay_out')
          answer%text = ''
          if (associated(frame)) call list_parts(frame, answer)
-         call structure_notes(case, structure, notes)
+         if (request%what == 'check_structure') call structure_notes(case, structure, notes)
          if (notes%count > 0) answer%text = answer%text//notes%text
       case ('modes')
          call answer_modes()

@@ -93,7 +93,7 @@ contains
    end subroutine case_from_statements
 
    !> Validate and make a structure; the rest of the case is set but not validated.
-   subroutine structure_from_statements(text, number, structure, before, case, error)
+   subroutine structure_from_statements(text, number, structure, before, case, error, is_part)
       character(len=*), intent(in) :: text
       real(c_double), intent(in), contiguous :: number(:)
       class(structure_type), allocatable, intent(out) :: structure
@@ -101,8 +101,11 @@ contains
       type(end_state), intent(out) :: before
       type(case_record), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
+      !> Whether a frame is laid out alone, as a part of a building
+      logical, intent(in), optional :: is_part
 
       call case_from_statements(text, number, case, error)
+      if (present(is_part) .and. allocated(case%frame)) case%frame%is_part = is_part
       if (.not. allocated(error)) call make_structure(case, structure, before, error)
    end subroutine structure_from_statements
 

@@ -448,6 +448,10 @@ REFUSED = [
         "is not of this frame",
     ),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)]).plane("x-2"), "is not of this frame"),
+    (
+        lambda f: rbsdem.Building([(f, angle, 0.0, 0.0) for angle in (0.0, 180.0)]),
+        "along one direction; a column bends once in it",
+    ),
 ]
 
 
@@ -458,6 +462,8 @@ def test_refusals_name_the_fault(made, told):
 
 
 ELASTIC = FrameMember(3e10, 0.16, 2e-3)
+MESH = rbsdem.Curtain(0.01, 0.2, C.bars[0][2])
+W = rbsdem.WallSection(1.8, 0.2, concrete=C.concrete, cover=0.02, vertical=MESH, horizontal=MESH)
 
 
 def plan(bays_x=(6.0, 4.0), bays_y=(4.0, 5.0), **more):
@@ -512,18 +518,13 @@ def test_a_grid_is_its_frames_one_by_one():
 
 def test_a_drawn_building_and_its_case_file_are_one(tmp_path):
     oblong = replace(C, depth=0.5)
-    wall = rbsdem.WallSection(
-        1.8, 0.2, concrete=C.concrete, cover=0.02,
-        vertical=rbsdem.Curtain(0.01, 0.2, C.bars[0][2]),
-        horizontal=rbsdem.Curtain(0.01, 0.2, C.bars[0][2]),
-    )  # fmt: skip
     house = rbsdem.Building.grid(
         [3.2], [5.6, 4.0], [5.0], columns={(0, 0, 0): C, (1, 1, 0): oblong}, beams_x=B, beams_y=B,
-        walls={("x", 2, 3): wall}, floor_load=6e3, edge_load=2e3, self_weight=True,
+        walls={("x", 2, 3): W}, floor_load=6e3, edge_load=2e3, self_weight=True,
         mass="from_loads", kinematics="pdelta", direction=20.0, damping=0.05,
     )  # fmt: skip
     # The wall bends along x, and across it is a post; sections turn with their planes.
-    assert house.frame_of("x-2").kinds["C-3-1"].sections == (wall, wall)
+    assert house.frame_of("x-2").kinds["C-3-1"].sections == (W, W)
     assert house.frame_of("y-3").kinds["C-2-1"].ends == "pinned"
     assert house.frame_of("y-1").kinds["C-1-1"].sections[0] == oblong.turned
     assert oblong.turned.depth == C.width
@@ -591,6 +592,46 @@ def test_a_plan_without_a_corner_is_its_frames_one_by_one():
         a, b = getattr(one, name), getattr(two, name)
         np.testing.assert_allclose(b, a, rtol=0, atol=1e-12 * np.abs(a).max(), err_msg=name)
     assert case_of_text(building.to_namelist()).column == building
+
+
+def test_frames_of_a_grid_need_not_stand_by_themselves():
+    # Beams of y-2 on girders; on x-2 the columns of the upper storey stand on beams of y-1 and y-3.
+    columns = {(0, 0, 0): ELASTIC, (2, 0, 0): None, (1, 2, 1): None, (3, 2, 1): None}
+    beams = {(0, 0, 0): ELASTIC, (0, 2, 1): None}
+    building = plan(columns=columns, beams_x=beams, floor_load=6e3, mass="from_loads")
+    push = rbsdem.pushover(building, drift=0.01, points=2)
+    secondary = push.frame("y-2")
+    # Members resist no torsion: at its ends a beam on girders has no moment, between them it has.
+    beam = secondary.member("B-1-1").moment[-1]
+    assert abs(beam[0]) < 1e-12 * abs(beam[1])
+    assert secondary.storey_drift[-1] == pytest.approx(push.drift_at((6.0, 0.0))[-1, :, 1])
+    axial = dict(zip(building.parts.members, building.parts.compression, strict=True))
+    feet = [axial[f"x-{j}:C-{i}-1"] for i in (1, 3) for j in (1, 3)]
+    assert sum(feet) == pytest.approx(90.0 * 12e3, rel=1e-12)
+    again = case_of_text(building.to_namelist(springs=True)).column
+    assert again == building
+    cut = rbsdem.pushover(again, drift=0.01, points=2).frame("y-2")
+    np.testing.assert_array_equal(cut.storey_shear, secondary.storey_shear)
+    with pytest.raises(rbsdem.InputError, match="parts that nothing ties"):
+        rbsdem.modes(building.plane("y-2").frame)
+    walls = {("x", line, place): W for line in (1, 2) for place in (1, 2, 3)}
+    with pytest.raises(rbsdem.InputError, match="mechanism, floor 1 can move along y"):
+        plan(bays_y=(4.0,), walls=walls)
+
+
+def test_buildings_are_equal_that_are_so_in_plan():
+    building = plan(floor_load=6e3, mass="from_loads")
+    assert case_of_text(building.to_namelist()).column == building
+    for name, value in {
+        "inertia": 1e5,
+        "centres": (1, 2),
+        "floor_mass": 1e4,
+        "direction": 9,
+    }.items():
+        other = building.changed(**{name: value})
+        assert other != building
+        # A drawing has no such centres, masses or inertia.
+        assert case_of_text(other.to_namelist()).column == other
 
 
 TEE = TeeSection(0.3, 0.5, C.concrete, flange_width=0.9, flange_thickness=0.1)

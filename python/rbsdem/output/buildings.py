@@ -111,7 +111,7 @@ def plan(
             for line in (own for own in moving if own.size):
                 ends = np.array([result.moved(end)[row, at] for end in line[[0, -1]]])
                 drawn.plot(*(line[[0, -1]] + scale * ends).T, **MEMBER)
-            drawn.set_title(f"Floor {at + 1}, displacements × {scale:g}")
+        drawn.set_title(f"Floor {at + 1}" + (f", displacements × {scale:g}" if result else ""))
         drawn.set_aspect("equal")
         drawn.margins(0.12)
         drawn.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
@@ -170,7 +170,9 @@ def building(
             if points[state]:
                 drawn.plot(*np.array(points[state]).T, **HINGE, markerfacecolor=fill, label=label)
         if any(points.values()):
-            drawn.legend(loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=4, handletextpad=0.0)
+            drawn.legend(
+                loc="upper center", bbox_to_anchor=(0.5, -0.04), ncols=4, handletextpad=0.0
+            )
         if result is not None:
             drawn.set_title(f"Displacements × {scale:g}")
         drawn.set(xlabel="$x$ (m)", ylabel="$y$ (m)", zlabel="Height (m)")
@@ -238,14 +240,13 @@ def _in_space(plane: Plane, points: Array, across: Array | float = 0.0) -> Array
 def _across(result: BuildingResult, plane: Plane, row: int, points: Array) -> Array:
     """Return how far points of a frame move across its plane, between floors linearly [m]."""
     building = result.building
-    levels = np.concatenate(([0.0], np.cumsum(building.storey_heights)))
-    heights = points[:, 1] - float(building.parts.y.min())
+    levels = building.floor_levels
     cosine, sine = plane.direction
     x, y = _in_space(plane, points)[:, :2].T[:, :, None] - building.centres.T[:, None, :]
     turned = result.floor_rotation[row]
     moved = cosine * (result.floor_y[row] + turned * x) - sine * (result.floor_x[row] - turned * y)
     return np.array(
-        [np.interp(z, levels, [0.0, *own]) for z, own in zip(heights, moved, strict=True)]
+        [np.interp(z, levels, [0.0, *own]) for z, own in zip(points[:, 1], moved, strict=True)]
     )
 
 

@@ -290,8 +290,7 @@ def storey_drift(result: FrameResult, *, ax: Axes | None = None, **line: Any) ->
     """
     _arguments.instance(result, "plot.storey_drift", FrameResult)
     drifts = 100 * result.storey_drift
-    storeys = result.frame.storey_heights
-    floors = float(result.frame.parts.y.min()) + np.concatenate(([0.0], np.cumsum(storeys)))
+    floors = result.frame.floor_levels
 
     def steps(values: Array) -> tuple[Array, Array]:
         return np.repeat(values, 2), np.column_stack((floors[:-1], floors[1:])).ravel()

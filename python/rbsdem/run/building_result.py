@@ -30,6 +30,7 @@ class FrameOfBuilding(FrameResult):
     """The response of a frame in a building; `building_result` is that of all of it."""
 
     building_result: ClassVar[Any]
+    plane: ClassVar[Plane]
 
     @property
     def periods(self) -> dict[str, float]:
@@ -37,6 +38,15 @@ class FrameOfBuilding(FrameResult):
         raise InputError(
             "a frame of a building has no periods of its own; ask rbsdem.modes(building)"
         )
+
+    @property
+    def floor_displacement(self) -> Array:
+        """Displacement of the floors from the base up along its axis [m]."""
+        base = self.x[:, self.frame.parts.floor == 0]
+        moved = self.building_result.moved(self.plane.places([0.0])[0]) @ self.plane.direction
+        return np.column_stack((base.mean(axis=1) if base.size else 0.0 * self.time, moved))[
+            :, : len(self._storeys()) + 1
+        ]
 
     @property
     def error_estimate(self) -> ErrorEstimate:
@@ -208,7 +218,7 @@ class BuildingResult(Result):
             )
         summary = {k: v for k, v in self.summary.items() if k not in _OF_ONE_MEMBER}
         found = FrameOfBuilding(channels, summary, frame, self.call, None, None)
-        vars(found)["building_result"] = self
+        vars(found).update(building_result=self, plane=plane)
         if not self.dynamic and self.path is not self:
             vars(found)["_path"] = self.path.frame(plane.name)
         else:

@@ -343,7 +343,7 @@ class FrameResult(Result):
         Of all members, or of some.
         """
         count, parts = len(self._storeys()), self.frame.parts
-        level = np.array([parts.y[parts.floor == i].mean() for i in range(count + 1)])
+        level = self.frame.floor_levels
         cuts = level[:-1] + 1e-3 * np.diff(level)
         shear, weight = np.zeros((self.time.size, count)), np.zeros(count)
         for at, member in enumerate(self.frame.geometry.values()):

@@ -17,7 +17,7 @@ from rbsdem.model.shape import CircularSection, RectangularSection, Section, Tee
 from rbsdem.model.springs import SPRINGS, Gauge, Layered, Spring
 from rbsdem.model.wall import Boundary, Curtain, Hoops, WallSection
 from rbsdem.section.columns import column
-from rbsdem.section.frame import Frame
+from rbsdem.section.frame import Frame, FrameInPlan
 from rbsdem.section.grid import is_drawn
 from rbsdem.section.infill import Infill
 from rbsdem.section.layered import LayeredColumn, LayeredModel
@@ -437,7 +437,7 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
         for plane in planes:
             start = f"{plane['name']}:"
             lost = {k.removeprefix(start): v for k, v in losses.items() if k.startswith(start)}
-            made = Frame(
+            made = FrameInPlan(
                 nodes=own[plane["name"]], members=members[plane["name"]], losses=lost or None
             )
             more = (plane["along"],) if "along" in plane else ()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._types import ArrayLike, Self
+from rbsdem._types import Array, ArrayLike, Self
 from rbsdem.errors import InputError, each_told_once, warn
 from rbsdem.model.column import NOTES_ON, Column, Damping, checked_column
 from rbsdem.model.frame import (
@@ -152,6 +152,8 @@ class Frame:
         #: What Fortran has made of it.
         _made: ClassVar[_core.Made]
 
+    #: Whether other frames of its building may hold it.
+    _is_part: ClassVar[bool] = False
     #: Joints of a frame do not open by themselves.
     opens: ClassVar[bool] = True
 
@@ -191,7 +193,7 @@ class Frame:
             _arguments.put(
                 self, damping=Damping(modal=_arguments.number(self.damping, "frame: damping"))
             )
-        _arguments.put(self, _made=_core.Made(self._state()))
+        _arguments.put(self, _made=_core.Made(self._state(), self._is_part))
         for note in self._made.text.splitlines()[3:] if NOTES_ON.get() else ():
             warn(note)
 
@@ -228,7 +230,7 @@ class Frame:
             y,
             floor.astype(np.int64),
             ends.reshape(m, 2).astype(np.int64) - 1,
-            compression,
+            np.full(m, np.nan) if answer.is_part else compression,
             tuple(
                 _spring_of(text, float(where), float(k))
                 for text, where, k in zip(springs, position, stiffness, strict=True)
@@ -285,6 +287,12 @@ class Frame:
         # Nodes of one's own make the floors, or more floors than the grid has.
         level = [parts.y[parts.floor == i].max() for i in floors] if len(floors) > 1 else [0.0]
         return tuple(np.diff(level).tolist())
+
+    @property
+    def floor_levels(self) -> Array:
+        """Heights of the floors from the base up, shape (storeys + 1,) [m]."""
+        top = self.parts.y[self.parts.floor == len(self.storey_heights)].max()
+        return np.asarray(top - np.cumsum((0.0, *self.storey_heights[::-1]))[::-1])
 
     @property
     def n(self) -> int:
@@ -728,6 +736,12 @@ class Frame:
         bays = len(self.bays or ())  # type: ignore[arg-type]
         infills = rules_of(drawing.infills, "bay", "storey", bays)
         return statement + infill_groups(infills) + sections
+
+
+class FrameInPlan(Frame):
+    """A frame of a building, which others may hold: alone its dead load gives no forces yet."""
+
+    _is_part = True
 
 
 def drawings_of(

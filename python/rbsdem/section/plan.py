@@ -31,6 +31,8 @@ from rbsdem.section.plan_grid import PlanDrawing
 
 #: Places in plan that are nearer than this are one [m].
 _ONE_PLACE = 1e-3
+#: Frames whose angles differ by less than this are along one line [degrees].
+_ONE_LINE = 1e-6
 #: Columns of two planes are one if their E A differ by less than this share: where joints of layers
 #: close they depend on M/V, which differs from plane to plane.
 _SAME = 0.1
@@ -214,6 +216,14 @@ class Building(Frame):
         names = ", ".join(plane.name for plane in self.planes)
         return f"Building({len(self.storey_heights)} storeys, frames {names})"
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether another building has the same members, frames in place, and floors."""
+        if not isinstance(other, Building) or self._in_plan() != other._in_plan():
+            return False
+        return super().__eq__(other) is True
+
+    __hash__ = Frame.__hash__
+
     def __reduce__(self) -> tuple[Any, ...]:
         return partial(type(self), **self._given), ()
 
@@ -301,7 +311,9 @@ class Building(Frame):
 
     def changed(self, **changes: Any) -> Building:
         """Return the building with other parameters in place of some of its own."""
-        return type(self)(**self._given | changes)
+        # Its drawing does not have them.
+        drawn = {"frames", "names", "centres", "floor_mass", "inertia"}.isdisjoint(changes)
+        return type(self)(**self._given | ({} if drawn else {"plan": None}) | changes)
 
     @property
     def scope_note(self) -> str:
@@ -341,6 +353,9 @@ class Building(Frame):
         _arguments.put(inside, kinematics=self.kinematics)
         vars(inside)["parts"] = replace(frame.parts, compression=compression, mass=self.parts.mass)
         vars(inside)["geometry"] = frame.geometry
+        # Its nodes need not be on each floor.
+        heights = self.storey_heights[: int(frame.parts.floor.max())]
+        vars(inside)["storey_heights"] = heights
         vars(inside)["kinds"] = {
             member: with_rigid_end(self.kinds[prefix + member], kind.rigid_end)
             for member, kind in frame.kinds.items()
@@ -349,23 +364,7 @@ class Building(Frame):
 
     def _state(self, *cells: Any, drawn: Any = None, **more: Any) -> _core.Statement:
         """Return the groups of a case file, with the drawings of kinds if they are given."""
-        values: dict[str, Any]
-        parts: list[_core.Statement | Group] = [("frame", self._settings())]
-        for plane in self.planes:
-            values = {"name": _core.Text(plane.name), "angle": plane.angle or None}
-            values |= {"arm": plane.arm or None, "along": plane.along}
-            parts.append(("plane", values))
-        for i, (mass, inertia, centre) in enumerate(
-            zip(self.plan_mass, self.inertia, self.centres, strict=True)
-        ):
-            values = {
-                "mass": mass,
-                "inertia": inertia,
-                "centre_x": centre[0],
-                "centre_y": centre[1],
-            }
-            numbers = {k: float(v) or None for k, v in values.items()}
-            parts.append(("floor", {"floor": i + 1, **numbers}))
+        parts = self._in_plan()
         names = names_of([member.kind for member in self.members])
         parts += groups_of_kinds(names, drawn or {})
         for node in self.nodes:
@@ -378,6 +377,19 @@ class Building(Frame):
         if isinstance(self.damping, Damping):
             parts.append(self.damping.statement())
         return _core.joined(parts)
+
+    def _in_plan(self) -> list[_core.Statement | Group]:
+        """Return the groups of the building, of its frames in place, and of its floors."""
+        parts: list[_core.Statement | Group] = [("frame", self._settings())]
+        for plane in self.planes:
+            values = {"angle": plane.angle or None, "arm": plane.arm or None, "along": plane.along}
+            parts.append(("plane", {"name": _core.Text(plane.name)} | values))
+        of_floors = np.column_stack((self.plan_mass, self.inertia, self.centres)).tolist()
+        keys = "mass", "inertia", "centre_x", "centre_y"
+        for i, values in enumerate(of_floors, 1):
+            numbers = {k: v or None for k, v in zip(keys, values, strict=True)}
+            parts.append(("floor", {"floor": i, **numbers}))
+        return parts
 
     def _settings(self) -> dict[str, Any]:
         """Return the keys of the building in `&frame`."""
@@ -423,7 +435,7 @@ class Building(Frame):
     def _with_frames(self, change: Callable[[Plane], Frame]) -> Building:
         places = [tuple(place)[1:] for place in self._given["frames"]]
         frames = [(change(one), *at) for one, at in zip(self.planes, places, strict=True)]
-        return self.changed(frames=frames, plan=None)
+        return self.changed(frames=frames)
 
 
 def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
@@ -599,6 +611,12 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
                 raise InputError(
                     f"building: column {member.name} is one of three planes, with {other.name}; a "
                     "column has two"
+                )
+            with_it = next(one for one in planes if other.name.startswith(f"{one.name}:"))
+            if abs((plane.angle - with_it.angle + 90.0) % 180.0 - 90.0) < _ONE_LINE:
+                raise InputError(
+                    f"building: columns {other.name} and {member.name} are at one place, in frames "
+                    "along one direction; a column bends once in it: leave one of them out"
                 )
             stiff = [column.kind.modulus * column.kind.area for column in (member, other)]
             is_post = (member.kind.ends == "pinned") != (other.kind.ends == "pinned")

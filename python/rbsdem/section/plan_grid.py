@@ -25,7 +25,7 @@ from rbsdem.model.frame import (
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import Section
 from rbsdem.model.wall import WallSection
-from rbsdem.section.frame import Frame, drawings_of
+from rbsdem.section.frame import FrameInPlan, drawings_of
 from rbsdem.section.grid import (
     CONCRETE_WEIGHT,
     elastic_kind,
@@ -343,7 +343,8 @@ class PlanDrawing:
             parts = assembled(False).parts
         axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
         with each_told_once():
-            return assembled(True, **more, plan=self)
+            plan = self if of_building.keys().isdisjoint(more) else None
+            return assembled(True, **more, plan=plan)
 
     def _frame(
         self,
@@ -351,7 +352,7 @@ class PlanDrawing:
         cells: tuple[Cells, Cells, Cells],
         weights: Weights,
         axial: Mapping[str, float] | None,
-    ) -> Frame:
+    ) -> FrameInPlan:
         """Return the frame of a line: elastic, or of its sections under axial loads."""
         columns, beams, infills = cells
         more: dict[str, Any] = {"ends": self.ends, "panel_hoops": self.panel_hoops}
@@ -370,7 +371,7 @@ class PlanDrawing:
             }
             more["infills"] = infills or None
         loads = weights.beams[line]
-        return Frame.grid(
+        return FrameInPlan.grid(
             self.storeys, self.bays(line.along), columns=columns, beams=beams, base=self.base,
             dead_load=loads if loads.any() else 0.0, node_load=weights.nodes[line],
             diaphragm=True, **more,

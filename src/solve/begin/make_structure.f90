@@ -114,6 +114,7 @@ contains
          frame%tangent_damping = damping%tangent
          frame%damped = damping%mass > 0.0_wp .or. damping%stiffness > 0.0_wp
       end associate
+      if (case%frame%is_part) return
       call check_stable(frame, error)
       if (allocated(error)) return
       frame%stamp = stamp_of(frame)
@@ -159,12 +160,14 @@ contains
       type(frame_type), intent(in) :: frame
       type(error_type), allocatable, intent(out) :: error
       type(band_matrix) :: matrix
-      character(len=12), parameter :: motion(3) = [character(len=12) :: 'move along x', 'move up', 'turn']
+      character(len=12), parameter :: motion(4) = [character(len=12) :: 'move along x', 'move up', 'turn', &
+                                                   'move along y']
+      character(len=:), allocatable :: part
       type(series_tangent), allocatable :: tangent(:)
       real(wp) :: band(frame%half_width + 1, frame%unknowns)
       !> Stiffness of elements along their axes and across, rotations over a length [N/m]
-      real(wp) :: stiffness(2, size(frame%element)), length, most
-      integer :: at(2), unstable, i
+      real(wp) :: stiffness(2, size(frame%element)), lost(frame%unknowns), length, most
+      integer :: at(2), of_floor(2), unstable, i
 
       tangent = frame%initial_tangent
       call frame%linearise(frame%initial_stiffness, tangent, unstable)
@@ -202,16 +205,22 @@ contains
          call report_stiffest()
          return
       end if
-      associate (free => maxloc(abs(matrix%triangle(1, :)*matrix%band(1, :)), dim=1))
-         at = findloc(frame%number, free)
-         ! The beams of a node behind a panel
-         if (at(2) == 0) at = [3, frame%part(free)]
-         ! A floor turns as a whole.
-         if (at(2) == 0) at(2) = 1
-      end associate
-      call fatal_error(error, bad_input, 'frame: it is a mechanism, node '//trim(frame%node_name(at(2)))// &
-                       ' can '//trim(motion(at(1)))//' without any force; give it a support, a spring or '// &
-                       'a stiffer member')
+      ! Pivots behind the first that is lost are made of it.
+      lost = matrix%triangle(1, :)*matrix%band(1, :)
+      i = max(1, findloc(lost > 0.0_wp .and. lost < most_lost, .false., dim=1))
+      at = findloc(frame%number, i)
+      ! The beams of a node behind a panel
+      if (at(2) == 0) at = [3, frame%part(i)]
+      part = 'node '//trim(frame%node_name(max(1, at(2))))
+      if (frame%plan%is_given()) then
+         of_floor = findloc(frame%plan%number, i)
+         if (of_floor(2) > 0) then
+            part = 'floor '//to_text(of_floor(2))
+            at(1) = merge(4, of_floor(1), of_floor(1) == 2)
+         end if
+      end if
+      call fatal_error(error, bad_input, 'frame: it is a mechanism, '//part//' can '//trim(motion(at(1)))// &
+                       ' without any force; give it a support, a spring or a stiffer member')
 
    contains
 
@@ -226,7 +235,7 @@ contains
 
       !> Name the part whose stiffness costs the digits, and what is rigid in its place.
       subroutine report_stiffest()
-         character(len=:), allocatable :: part, remedy
+         character(len=:), allocatable :: remedy
 
          at = maxloc(stiffness)
          associate (e => frame%element(at(2)))

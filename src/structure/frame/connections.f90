@@ -9,7 +9,7 @@ module rbs_structure_frame_connections
    implicit none
    private
 
-   public :: find_leaders, check_floors, end_nodes, hold_idle, hold_between_pins, check_geometry
+   public :: find_leaders, check_floors, end_nodes, hold_idle, hold_between_pins, check_geometry, check_held
 
 contains
 
@@ -113,8 +113,7 @@ contains
       end do
    end subroutine hold_between_pins
 
-   !> Refuse nodes at one place, nodes without a member, frames all of whose nodes are held, and members
-   !> between the same nodes.
+   !> Refuse nodes at one place, nodes without a member, and members between the same nodes.
    subroutine check_geometry(nodes, members, grid_nodes, grid_members, messages)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
@@ -167,14 +166,23 @@ contains
                               ' join the same two nodes; remove one')
          end do
       end do
+   end subroutine check_geometry
+
+   !> Refuse frames that nothing holds, those all of whose nodes are held, and those of several parts.
+   subroutine check_held(nodes, members, messages)
+      type(frame_node), intent(in) :: nodes(:)
+      type(frame_member), intent(in) :: members(:)
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
       if (all([(all(nodes(i)%held), i=1, size(nodes))])) then
          call messages%add('frame: every node is held, and nothing can move; free one of them')
       else if (.not. any([(any(nodes(i)%held) .or. any(nodes(i)%ground%rule /= ''), &
                            i=1, size(nodes))])) then
          call messages%add('frame: nothing holds it; give nodes a support, or springs to the ground')
       end if
-      call check_tied(nodes, members, has_member, messages)
-   end subroutine check_geometry
+      call check_tied(nodes, members, end_nodes(nodes, members), messages)
+   end subroutine check_held
 
    !> Refuse parts that neither a member nor a common motion ties: one would carry all of the lateral load,
    !> the other none.

@@ -7,7 +7,7 @@ module rbs_structure_frame_frame_parts
    use rbs_base_text, only: to_text
    use rbs_base_tolerances, only: same_input
    use rbs_structure_frame_connections, only: find_leaders, check_floors, end_nodes, hold_idle, &
-                                              hold_between_pins, check_geometry
+                                              hold_between_pins, check_geometry, check_held
    use rbs_structure_frame_frame_checks, only: check_values, check_reference, is_rigid, is_strut, group_of
    use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost, stiffness_of
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record, kind_record
@@ -68,6 +68,7 @@ contains
       call hold_idle(self%node, self%member, self%grid_nodes)
       call hold_between_pins(self%node, self%member)
       call check_geometry(self%node, self%member, self%grid_nodes, self%grid_members, messages)
+      if (.not. record%is_part) call check_held(self%node, self%member, messages)
       if (messages%count > known) return
       call choose_top(self, record, messages)
       call push(self, record, messages)
@@ -382,7 +383,7 @@ contains
          end associate
       end do
       call find_leaders(self%node, messages)
-      call check_floors(self%node, messages)
+      if (.not. record%is_part) call check_floors(self%node, messages)
    end subroutine put_nodes
 
    !> Put in the members that are given one by one.

@@ -152,6 +152,8 @@ module rbs_structure_frame_frame_record
       real(wp) :: eccentricity_x = 0.0_wp, eccentricity_y = 0.0_wp
       character(len=16) :: kinematics = 'small', base = 'fixed', pattern = 'triangular', collapse = 'storey'
       logical :: diaphragm = .false.
+      !> Whether it is laid out alone: other frames of its building hold it, and it is not solved
+      logical :: is_part = .false.
       !> Of the lateral load of a building [degrees]
       real(wp) :: direction = 0.0_wp
       character(len=name_length) :: control_node = ''
