@@ -164,7 +164,7 @@ contains
       select case (request%what)
       case ('check_structure', 'lay_out')
          answer%text = ''
-         if (associated(frame)) call list_parts(frame, answer)
+         if (associated(frame)) call list_parts(frame, case%parts%node%mass(1), answer)
          if (request%what == 'check_structure') call structure_notes(case, structure, notes)
          if (notes%count > 0) answer%text = answer%text//notes%text
       case ('modes')
@@ -235,10 +235,12 @@ contains
    end subroutine evaluate_structure
 
    !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
-   !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
-   !> under dead load; for the springs positions in the clear length and initial stiffness; the mass along x.
-   subroutine list_parts(frame, answer)
+   !> tabs between. Values: for the nodes x, y, floor and mass; for the members numbers of their nodes,
+   !> compression under dead load; for the springs positions in the clear length and initial stiffness; the
+   !> mass along x.
+   subroutine list_parts(frame, node_mass, answer)
       type(frame_type), intent(in) :: frame
+      real(c_double), intent(in) :: node_mass(:)
       type(answer_type), intent(inout) :: answer
       character(len=1), parameter :: tab = achar(9), line = new_line('a')
       character(len=12), parameter :: kinds(3) = ['shear       ', 'flexure     ', 'axial_spring']
@@ -274,7 +276,7 @@ contains
          end if
       end do
       answer%text = text%text(:text%length)//line
-      answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
+      answer%value = [frame%x, frame%y, real(frame%storey, c_double), node_mass, &
                       (real(frame%element(i)%node, c_double), i=1, frame%members), &
                       frame%element(:frame%members)%compression, position, stiffness, &
                       -sum(frame%pattern(horizontal)%force)]

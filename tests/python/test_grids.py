@@ -115,7 +115,7 @@ def test_a_frame_of_kinds_has_loads_by_rules_too(tmp_path):
         ({"columns": {(0, "outer"): OUTER}}, "'outer' is not known"),
         ({"columns": {"outer": OUTER}}, "must be a pair"),
         ({"node_load": {("outer", 0): "heavy"}}, "node_load"),
-        ({"columns": {((1, 9), 0): OUTER, (0, 0): OUTER}}, "line = 9, but the frame has 2 lines"),
+        ({"columns": {((1, 9), 0): OUTER, (0, 0): OUTER}}, "line = 9, but there are 2"),
     ],
 )
 def test_refusals(change, words):

@@ -174,7 +174,7 @@ def test_a_storey_without_infills_is_the_soft_one():
         (lambda: drawn(columns={(0, 0): COLUMN, (1, 1): None}, infills={(1, 1): BRICK}),
          "the infill in bay 1, storey 1 has no column beside it"),
         (lambda: drawn(infills={(1, 1): COLUMN}), "must be an Infill"),
-        (lambda: drawn(infills={(3, 1): BRICK}), "infills: bay = 3, but the frame has 2 bays"),
+        (lambda: drawn(infills={(3, 1): BRICK}), "infills: bay = 3, but there are 2"),
     ],
 )  # fmt: skip
 def test_what_an_infill_cannot_be(call, message):

@@ -426,7 +426,10 @@ REFUSED = [
     (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
     (lambda f: rbsdem.Building([]), "it has no frames"),
     (lambda f: rbsdem.Building([(f, 0.0)]), "must be a tuple"),
-    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], centres=(1.0, 2.0, 3.0)), "centres has 3 numbers"),
+    (
+        lambda f: rbsdem.Building([(f, 0.0, 0.0)], centres=(1.0, 2.0, 3.0)),
+        "centres = .* must be a pair",
+    ),
     (
         lambda f: rbsdem.pushover(rbsdem.Building([(f, 0.0, 0.0)]), drift=1e-4).drift_at((1.0,)),
         "must be x and y",
@@ -434,7 +437,7 @@ REFUSED = [
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a:b"]), "is no name of a frame"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], names=["a", "b"]), "2 names for 1 frames"),
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)], direction=90.0), "has a part along y"),
-    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], inertia=[1.0, 2.0]), "2 values for 1 floors"),
+    (lambda f: rbsdem.Building([(f, 0.0, 0.0)], inertia=[1.0, 2.0]), "one for each of 1 floors"),
     (lambda f: rbsdem.Building([(replace(f, damping=0.05), 0, 0)]), "has damping of its own"),
     (lambda f: rbsdem.pushover(f, drift=0.01, direction=20.0), "direction is for buildings"),
     (
@@ -640,7 +643,7 @@ GRIDS = [
     ({"walls": {(1, 1): None}}, "must be .direction, line, place."),
     ({"walls": {("x", 1, 1): None}}, "walls: .*WallSection"),
     ({"eccentricity": (5.0, 5.0)}, "5 per cent is 0.05"),
-    ({"columns": {(4, 1, 0): ELASTIC}}, "columns: line_x = 4, but the building has 3"),
+    ({"columns": {(4, 1, 0): ELASTIC}}, "columns: line_x = 4, but there are 3"),
     ({"beams_x": {(1, 1): ELASTIC}}, "must be three numbers"),
     ({"floor_load": [1e3] * 3}, "one for each of 2 floors"),
     ({"bays_x": (-1.0,)}, "must be lengths above 0"),

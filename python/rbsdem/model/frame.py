@@ -406,6 +406,8 @@ class FrameParts:
         Springs of the members, in their order, then those of panels.
     mass : float
         Mass that moves along x [kg].
+    node_mass : ndarray, shape (nodes,)
+        Masses of the nodes, with their parts of those of the floors [kg].
     """
 
     nodes: tuple[str, ...]
@@ -417,6 +419,7 @@ class FrameParts:
     compression: Array
     springs: tuple[FrameSpring, ...]
     mass: float
+    node_mass: Array
 
     def springs_of(self, group: str) -> list[FrameSpring]:
         """Return the springs of a group, as the columns of a result hold them.
@@ -605,6 +608,19 @@ def cells_of(
     return by_place
 
 
+def check_places(
+    cells: Iterable[tuple[int, ...]], name: str, words: Sequence[str], most: Sequence[int]
+) -> None:
+    """Refuse places that a grid does not have."""
+    for place in cells:
+        for word, at, last in zip(words, place, most, strict=True):
+            if not 0 <= at <= last:
+                raise InputError(
+                    f"frame: {name}: {word} = {at}, but there are {last}; correct it, or give 0 "
+                    "for all"
+                )
+
+
 def index_of(name: str, names: tuple[str, ...], what: str) -> int:
     """Return the number of a node or member, from 0."""
     if name not in names:
@@ -649,9 +665,8 @@ def groups_of_kinds(
 
 
 def groups_of_cells(
-    cells: Mapping[tuple[int, int], Any],
     group: str,
-    lines: int,
+    places: Iterable[tuple[dict[str, Any], Any]],
     names: Mapping[NamedKind, str],
     drawn: Mapping[Any, dict[str, Any]],
 ) -> list[Group]:
@@ -659,12 +674,10 @@ def groups_of_cells(
 
     Parameters
     ----------
-    cells : mapping
-        Kinds of members, and drawings, by line or bay and storey.
     group : {"column_of", "beam_of"}
         Its name.
-    lines : int
-        Number of lines or bays.
+    places : iterable
+        Keys of each place, and the kind of members or drawing there.
     names : mapping
         Names of the kinds.
     drawn : mapping
@@ -672,7 +685,7 @@ def groups_of_cells(
     """
     found: list[Group] = []
     kinds: dict[int, str] = {}
-    for place, cell in rules_of(cells, "line" if group == "column_of" else "bay", "storey", lines):
+    for place, cell in places:
         if isinstance(cell, FrameMember):
             if id(cell) not in kinds:
                 kinds[id(cell)] = names[stated(cell)]

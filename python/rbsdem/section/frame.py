@@ -220,8 +220,8 @@ class Frame:
         lines = answer.text.split("\n")[:3]
         nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in lines)
         n, m, s = len(nodes), len(members), len(springs)
-        x, y, floor, ends, compression, position, stiffness, mass = np.split(
-            answer.values, np.cumsum([n, n, n, 2 * m, m, s, s])
+        x, y, floor, node_mass, ends, compression, position, stiffness, mass = np.split(
+            answer.values, np.cumsum([n, n, n, n, 2 * m, m, s, s])
         )
         return FrameParts(
             nodes,
@@ -236,6 +236,7 @@ class Frame:
                 for text, where, k in zip(springs, position, stiffness, strict=True)
             ),
             float(mass[0]),
+            node_mass,
         )
 
     @cached_property
@@ -507,8 +508,10 @@ class Frame:
         lines = len(self.bays or ()) + 1  # type: ignore[arg-type]
         parts += self._floors() if drawing is None else drawing.floors(lines)
         parts += groups_of_kinds(names, drawn)
-        parts += groups_of_cells(grids[0], "column_of", lines, names, drawn)
-        parts += groups_of_cells(grids[1], "beam_of", lines - 1, names, drawn)
+        columns = rules_of(grids[0], "line", "storey", lines)
+        beams = rules_of(grids[1], "bay", "storey", lines - 1)
+        parts += groups_of_cells("column_of", columns, names, drawn)
+        parts += groups_of_cells("beam_of", beams, names, drawn)
         nodes = self.nodes if drawing is None else drawing.nodes
         parts += placed([entry for node in nodes for entry in node._groups()])
         parts += [member._group(names[stated(member.kind)]) for member in members]

@@ -22,6 +22,7 @@ from rbsdem.model.frame import (
     Member,
     Place,
     at_place,
+    check_places,
     places_of,
     rules_of,
     with_rigid_end,
@@ -178,17 +179,27 @@ def cells_of_walls(walls: Any, lines: int, storeys: int) -> dict[tuple[int, int]
     cells: dict[tuple[int, int], WallSection] = {}
     for line, sections in (walls or {}).items():
         number = _arguments.integer(line, "frame: walls", least=1, most=lines)
-        each = [sections] if isinstance(sections, WallSection) else list(sections)
-        for section in each:
-            _arguments.instance(section, f"frame: walls: line {number}", WallSection)
-        if len(each) not in (1, storeys):
-            raise InputError(
-                f"frame: walls: line {number} has {len(each)} sections for {storeys} storeys; give "
-                "one, or one for each"
-            )
+        each = sections_of_wall(sections, storeys, f"line {number}")
         places = [0] if len(each) == 1 else range(1, storeys + 1)
         cells |= {(number, k): section for k, section in zip(places, each, strict=True)}
     return cells
+
+
+def sections_of_wall(sections: Any, storeys: int, where: str) -> tuple[WallSection, ...]:
+    """Return the sections of a wall: one for all storeys, or one for each from the ground up."""
+    each = (
+        [sections]
+        if isinstance(sections, WallSection)
+        else _arguments.several(sections, f"frame: walls: {where}", "WallSection")
+    )
+    for section in each:
+        _arguments.instance(section, f"frame: walls: {where}", WallSection)
+    if len(each) not in (1, storeys):
+        raise InputError(
+            f"frame: walls: {where} has {len(each)} sections for {storeys} storeys; give one, or "
+            "one for each"
+        )
+    return tuple(each)
 
 
 def spans_of_walls(stated: Any, lines: int) -> tuple[float, ...]:
@@ -280,13 +291,7 @@ class Grid:
     def check_places(self, name: str, cells: Mapping[tuple[int, int], Any], lines: int) -> None:
         """Refuse places that the grid does not have."""
         line = "bay" if name in ("beams", "infills") else "line"
-        for at, storey in cells:
-            for what, number, most in ((line, at, lines), ("storey", storey, len(self.storeys))):
-                if not 0 <= number <= most:
-                    raise InputError(
-                        f"frame: {name}: {what} = {number}, but the frame has {most} {what}s; "
-                        "correct it, or give 0 for all"
-                    )
+        check_places(cells, name, (line, "storey"), (lines, len(self.storeys)))
 
     def all_cells(self) -> list[Any]:
         """Return what stands in the places where there is a member."""

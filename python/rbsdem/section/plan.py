@@ -27,7 +27,7 @@ from rbsdem.model.frame import (
 from rbsdem.model.materials import Ties
 from rbsdem.model.springs import Group, placed
 from rbsdem.section.frame import SCOPE_NOTE, Frame
-from rbsdem.section.plan_grid import PlanDrawing
+from rbsdem.section.plan_grid import PlanDrawing, by_floor
 
 #: Places in plan that are nearer than this are one [m].
 _ONE_PLACE = 1e-3
@@ -180,21 +180,21 @@ class Building(Frame):
                 "building: its frames have no floors; give them grids, or their nodes floors "
                 "(FrameNode(floor=...))"
             )
-        put = self.__dict__.__setitem__
-        put("_given", keywords)
-        put("planes", planes)
-        put("plan", plan)
-        put("direction", _arguments.number(direction, "building: direction"))
-        put("centres", _by_floor(centres, floors, "centres", 2))
-        put("plan_mass", _by_floor(floor_mass, floors, "floor_mass")[:, 0])
         laid = [_laid(plane) for plane in planes]
         rises, axial = _shared(planes, laid)
-        put("rises", rises)
-        put("axial_of", axial)
-        of_floors = _inertia_of(planes, laid, self.centres)
-        put(
-            "inertia", of_floors if inertia is None else _by_floor(inertia, floors, "inertia")[:, 0]
+        _arguments.put(
+            self,
+            _given=keywords,
+            planes=planes,
+            plan=plan,
+            direction=_arguments.number(direction, "building: direction"),
+            centres=by_floor(centres, floors, "centres", 2),
+            plan_mass=by_floor(floor_mass, floors, "floor_mass")[:, 0],
+            rises=rises,
+            axial_of=axial,
         )
+        turning = _inertia_of(planes, self.centres) if inertia is None else inertia
+        _arguments.put(self, inertia=by_floor(turning, floors, "inertia")[:, 0])
         shared = {*axial, *axial.values()}
         super().__init__(
             kinematics=kinematics,
@@ -472,41 +472,16 @@ def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
     return tuple(planes)
 
 
-def _by_floor(numbers: Any, floors: int, name: str, width: int = 1) -> Array:
-    """Return numbers or pairs for each floor, shape (floors, width)."""
-    values = _arguments.vector(numbers, f"building: {name}", shape="any")
-    if values.size % width:
-        raise InputError(
-            f"building: {name} has {values.size} numbers; give two, or two for each floor"
-        )
-    try:
-        values = np.broadcast_to(values.reshape(-1, width), (floors, width))
-    except ValueError:
-        raise InputError(
-            f"building: {name} has {values.size // width} values for {floors} floors; give one, or "
-            "one for each"
-        ) from None
-    if not np.isfinite(values).all():
-        raise InputError(f"building: {name} has values that are not finite; correct them")
-    return values
-
-
 def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
     """Return the nodes and members of a frame in a building."""
     frame, parts, prefix = plane.frame, plane.frame.parts, f"{plane.name}:"
     stated_nodes = {node.name: node for node in frame.nodes}
-    grid = _grid_masses(frame)
     panels = {spring.member for spring in parts.springs if spring.group == "panel"}
-    ends = {parts.nodes[i] for i in parts.ends.ravel()}
     nodes = []
-    for name, x, y, floor in zip(
-        parts.nodes, parts.x.tolist(), parts.y.tolist(), parts.floor.tolist(), strict=True
-    ):
-        if name not in ends:
-            continue
-        node, mass = stated_nodes.get(name, FrameNode(name)), grid.get(name, 0.0)
+    for i in np.unique(parts.ends).tolist():
+        name, floor = parts.nodes[i], int(parts.floor[i])
+        node = stated_nodes.get(name, FrameNode(name))
         support = frame.supports.get(name, "free")
-        panel = (node.panel or frame.panel) if name in panels else None
         if node.moves_with and not floor > 0:
             raise InputError(
                 f"building: node {prefix}{name}: moves_with is of a planar frame; in a building "
@@ -516,12 +491,12 @@ def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
             replace(
                 node,
                 name=prefix + name,
-                x=x,
-                y=y,
+                x=float(parts.x[i]),
+                y=float(parts.y[i]),
                 floor=floor if floor >= 0 else None,
                 support="free" if support == "springs" else support,
-                mass=node.mass + mass,
-                panel=panel,
+                mass=float(parts.node_mass[i]),
+                panel=(node.panel or frame.panel) if name in panels else None,
                 moves_with="",
             )
         )
@@ -539,34 +514,18 @@ def _laid(plane: Plane) -> tuple[list[FrameNode], list[Member]]:
     return nodes, members
 
 
-def _grid_masses(frame: Frame) -> dict[str, float]:
-    """Return the masses of floors at the nodes of a grid, by the widths beside them."""
-    storeys, bays = len(frame.storeys or ()), np.array(frame.bays or ())  # type: ignore[arg-type]
-    lines = bays.size + 1
-    # Nodes of the grid come first; where it steps back there is none.
-    there = frame.parts.floor[lines : lines * (storeys + 1)].reshape(storeys, lines) > 0
-    widths = bays * (there[:, :-1] & there[:, 1:])
-    beside = np.pad(widths, ((0, 0), (1, 0))) + np.pad(widths, ((0, 0), (0, 1)))
-    beside = np.where(widths.any(axis=1, keepdims=True), beside, there)
-    masses = np.broadcast_to(frame.floor_mass, storeys)[:, None]
-    shares = beside / np.maximum(beside.sum(axis=1, keepdims=True), 1e-9) * masses
-    return dict(zip(frame.parts.nodes[lines:], shares.ravel().tolist(), strict=False))
-
-
-def _inertia_of(planes: Sequence[Plane], laid: Sequence[Any], centres: Array) -> Array:
+def _inertia_of(planes: Sequence[Plane], centres: Array) -> Array:
     """Return the rotary inertia of the masses of frames about the centres of the floors."""
     inertia = np.zeros(len(centres))
-    for plane, (nodes, _) in zip(planes, laid, strict=True):
-        cosine, sine = plane.direction
-        for node in nodes:
-            if not (node.floor and node.mass):
-                continue
-            x, y = centres[node.floor - 1]
-            across = plane.arm - (x * sine - y * cosine)
-            along = 0.0
-            if plane.along is not None:
-                along = plane.along + (node.x or 0.0) - (x * cosine + y * sine)
-            inertia[node.floor - 1] += node.mass * (across**2 + along**2)
+    for plane in planes:
+        parts, axis = plane.frame.parts, np.array(plane.direction)
+        at = parts.floor > 0
+        floor = parts.floor[at] - 1
+        away = plane.places(parts.x[at]) - centres[floor]
+        if plane.along is None:
+            # On its line, wherever that is
+            away = away - np.outer(away @ axis, axis)
+        np.add.at(inertia, floor, parts.node_mass[at] * (away**2).sum(axis=1))
     return inertia
 
 
@@ -634,12 +593,5 @@ def _held_up(member: Member, shared: set[str]) -> Member:
     """Return a member that, as a column of two planes, does not lose its axial load."""
     if member.name not in shared or member.kind.failure_drift is None:
         return member
-    kind = _without_failure(member.kind)
+    kind = replace(member.kind, failure_drift=None, failure_load=None, shear_drift=None)
     return replace(member, kind=kind)
-
-
-def _without_failure(kind: FrameMember) -> FrameMember:
-    values: dict[str, Any] = {name: getattr(kind, name) for name in kind.__dataclass_fields__}
-    for name in ("flexure", "shear"):
-        values[name] = dict(values[name]) if values[name] else None
-    return FrameMember(**values | dict.fromkeys(("failure_drift", "failure_load", "shear_drift")))

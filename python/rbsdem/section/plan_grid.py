@@ -17,10 +17,10 @@ from rbsdem.model.frame import (
     FrameMember,
     at_place,
     cells_of,
+    check_places,
+    groups_of_cells,
     groups_of_kinds,
     names_of,
-    rigid_lengths,
-    stated,
 )
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import Section
@@ -32,6 +32,7 @@ from rbsdem.section.grid import (
     halves_of,
     infill_groups,
     is_drawn,
+    sections_of_wall,
     told_of_small,
 )
 from rbsdem.section.infill import Infill
@@ -87,7 +88,7 @@ class PlanDrawing:
     live_share: float = 0.3
     self_weight: bool = False
     mass: Literal["from_loads"] | None = None
-    floor_mass: tuple[float, ...] = ()
+    floor_mass: tuple[float, ...] | None = None
     eccentricity: tuple[float, float] = (0.0, 0.0)
     ends: float | Literal["asce"] | None = None
     panel_hoops: Ties | Literal["none"] | None = None
@@ -104,27 +105,25 @@ class PlanDrawing:
                     f"building: {name} = {_arguments.shown(drawn[name])} must be lengths above 0"
                 )
             sizes[name] = tuple(values.tolist())
-        lines = len(sizes["bays_x"]) + 1, len(sizes["bays_y"]) + 1
         floors = len(sizes["storeys"])
+        lines = len(sizes["bays_x"]) + 1, len(sizes["bays_y"]) + 1
         made = drawn | sizes
-        made["columns"] = cells_of(drawn["columns"], "columns", FrameMember, *lines, halves=Section)
-        _check_places("columns", made["columns"], ("line_x", "line_y", "storey"), (*lines, floors))
+        cells: list[tuple[Any, ...]] = [("columns", FrameMember, Section, *lines)]
         for along, bays, across in (("x", lines[0] - 1, lines[1]), ("y", lines[1] - 1, lines[0])):
-            kinds: Any = (("beams", FrameMember, Section), ("infills", Infill, None))
-            for name, kind, halves in kinds:
-                argument = f"{name}_{along}"
-                made[argument] = cells_of(
-                    drawn[argument], argument, kind, bays, across, halves=halves
-                )
-                _check_places(
-                    argument, made[argument], ("bay", "line", "storey"), (bays, across, floors)
-                )
+            cells.append((f"beams_{along}", FrameMember, Section, bays, across))
+            cells.append((f"infills_{along}", Infill, None, bays, across))
+        for name, kind, halves, *most in cells:
+            made[name] = cells_of(drawn[name], name, kind, *most, halves=halves)
+            words = ("line_x", "line_y") if name == "columns" else ("bay", "line")
+            check_places(made[name], name, (*words, "storey"), (*most, floors))
         made["walls"] = dict(_walls(drawn["walls"], lines, floors))
         for name, unit in (("floor_load", "N/m2"), ("live_load", "N/m2"), ("edge_load", "N/m")):
-            made[name] = _by_floor(drawn[name], floors, name)
+            made[name] = tuple(by_floor(drawn[name], floors, name, least=0.0)[:, 0].tolist())
             told_of_small(f"building: {name}", made[name], unit, f"6 k{unit} is 6e3")
         mass = drawn["floor_mass"]
-        made["floor_mass"] = () if mass is None else _by_floor(mass, floors, "floor_mass")
+        if mass is not None:
+            masses = by_floor(mass, floors, "floor_mass", least=0.0)
+            made["floor_mass"] = tuple(masses[:, 0].tolist())
         if drawn["mass"] is not None:
             _arguments.choice(drawn["mass"], "building: mass", ("from_loads",))
             if mass is not None:
@@ -160,10 +159,13 @@ class PlanDrawing:
         """Return the places of the lines across a direction, from the first [m]."""
         return np.concatenate(([0.0], np.cumsum(self.bays(along))))
 
+    def offset(self, line: Line) -> float:
+        """Return the place of a line across its direction [m]."""
+        return float(self.places("y" if line.along == "x" else "x")[line.number - 1])
+
     def beam(self, line: Line, bay: int, storey: int) -> Any:
         """Return what stands in a place of beams."""
-        cells = self.beams_x if line.along == "x" else self.beams_y
-        return at_place(cells, bay, line.number, storey)
+        return at_place(getattr(self, f"beams_{line.along}"), bay, line.number, storey)
 
     def panel(self, i: int, j: int, floor: int) -> bool:
         """Return whether a floor has a panel in a bay along x and one along y.
@@ -218,7 +220,7 @@ class PlanDrawing:
     def cells(self, line: Line) -> tuple[Cells, Cells, Cells]:
         """Return columns, beams and infills of a line by place or bay and storey."""
         levels, bays = range(1, len(self.storeys) + 1), len(self.bays(line.along))
-        infills = self.infills_x if line.along == "x" else self.infills_y
+        infills = getattr(self, f"infills_{line.along}")
         columns = {(i, k): self.column(line, i, k) for k in levels for i in range(1, bays + 2)}
         beams = {(i, k): self.beam(line, i, k) for k in levels for i in range(1, bays + 1)}
         panels = {(i, k): at_place(infills, i, line.number, k) for i, k in beams if infills}
@@ -249,13 +251,9 @@ class PlanDrawing:
         walls = [wall for storeys in self.walls.values() for wall in storeys]
         placed = [*self.columns.values(), *self.beams_x.values(), *self.beams_y.values(), *walls]
         drawn, sections, hoops = drawings_of(placed, self.panel_hoops)
-        grid: dict[str, Any] = {
-            "storeys": self.storeys,
-            "bays_x": self.bays_x,
-            "bays_y": self.bays_y,
-        }
         usual = {"ends": None, "base": "fixed", "mass": None, "self_weight": False}
-        grid |= {name: value for name, no in usual.items() if (value := getattr(self, name)) != no}
+        grid = {name: getattr(self, name) for name in ("storeys", "bays_x", "bays_y", *usual)}
+        grid = {name: value for name, value in grid.items() if value != usual.get(name)}
         grid |= {
             f"eccentricity_{a}": e or None for a, e in zip("xy", self.eccentricity, strict=True)
         }
@@ -264,42 +262,36 @@ class PlanDrawing:
             "live_share": self.live_share if any(self.live_load) else None,
         }
         parts: list[Any] = [("frame", grid | of_building)]
-        loads = {
-            "mass": self.floor_mass,
-            "floor_load": self.floor_load,
-            "edge_load": self.edge_load,
-        }
-        loads["live_floor_load"] = self.live_load
-        for i in range(len(self.storeys)):
-            of_floor = {
-                name: (several[i] or None) if several else None for name, several in loads.items()
-            }
-            parts.append(("floor", {"floor": i + 1} | of_floor))
+        keys = "mass", "floor_load", "edge_load", "live_floor_load"
+        none = (0.0,) * len(self.storeys)
+        loads = self.floor_mass or none, self.floor_load, self.edge_load, self.live_load
+        for i, values in enumerate(zip(*loads, strict=True), 1):
+            of_floor = {key: value or None for key, value in zip(keys, values, strict=True)}
+            parts.append(("floor", {"floor": i} | of_floor))
         names = names_of([kind for kind in placed if isinstance(kind, FrameMember)])
         parts += groups_of_kinds(names, drawn)
-
-        def put(group: str, cell: Any, **place: Any) -> None:
-            keys = {"kind": _core.Text("none")} if cell is None else drawn.get(cell)
-            if keys is None:
-                keys = {"kind": _core.Text(names[stated(cell)])} | rigid_lengths(cell.rigid_end)
-            parts.append((group, {k: v or None for k, v in place.items()} | keys))
-
-        for (i, j, k), cell in self.columns.items():
-            put("column_of", cell, line_x=i, line_y=j, storey=k)
+        columns: list[tuple[dict[str, Any], Any]] = [
+            ({"line_x": i or None, "line_y": j or None, "storey": k or None}, cell)
+            for (i, j, k), cell in self.columns.items()
+        ]
         for (way, line, place), several in self.walls.items():
             x, y = (place, line) if way == "x" else (line, place)
-            for k, wall in enumerate(several, 1 if len(several) > 1 else 0):
-                put("column_of", wall, along=way, line_x=x, line_y=y, storey=k)
-        beams = {"x": self.beams_x, "y": self.beams_y}
-        infills = {"x": self.infills_x, "y": self.infills_y}
-        for along, cells in beams.items():
-            for (i, j, k), cell in cells.items():
-                put("beam_of", cell, along=along, bay=i, of_line=j, storey=k)
-        panels = [
-            ({"along": along, "bay": i or None, "of_line": j or None, "storey": k or None}, cell)
-            for along, cells in infills.items()
-            for (i, j, k), cell in cells.items()
-        ]
+            for k, wall in enumerate(several, 1):
+                storey = k if len(several) > 1 else None
+                columns.append(({"along": way, "line_x": x, "line_y": y, "storey": storey}, wall))
+        beams, panels = (
+            [
+                (
+                    {"along": along, "bay": i or None, "of_line": j or None, "storey": k or None},
+                    cell,
+                )
+                for along in ("x", "y")
+                for (i, j, k), cell in getattr(self, f"{name}_{along}").items()
+            ]
+            for name in ("beams", "infills")
+        )
+        parts += groups_of_cells("column_of", columns, names, drawn)
+        parts += groups_of_cells("beam_of", beams, names, drawn)
         return _core.joined(parts) + infill_groups(panels) + sections
 
     def building(self, cls: Any, more: Mapping[str, Any]) -> Any:
@@ -321,12 +313,7 @@ class PlanDrawing:
             if any(members[1].values())
             or any(kind is not None and not _is_post(kind) for kind in members[0].values())
         }
-        places = [(Line("y", i), y) for i, y in enumerate(self.places("x"), 1)]
-        places += [(Line("x", j), -y) for j, y in enumerate(self.places("y"), 1)]
-        arms = {line: float(arm) for line, arm in places}
-        masses = weights.masses(self.floor_mass, self.mass)
-        of_building: dict[str, Any] = {"names": [line.name for line in cells]}
-        of_building |= dict(zip(("floor_mass", "centres", "inertia"), masses, strict=True))
+        of_building = weights.masses() | {"names": [line.name for line in cells]}
 
         def assembled(drawn: bool, **about: Any) -> Any:
             frames = []
@@ -335,7 +322,10 @@ class PlanDrawing:
                     frame = self._frame(line, members, weights, axial if drawn else None)
                 except InputError as error:
                     raise error.of(f"frame {line.name}") from None
-                frames.append((frame, 90.0 if line.along == "y" else 0.0, arms[line], 0.0))
+                angle, arm = (
+                    (0.0, -self.offset(line)) if line.along == "x" else (90.0, self.offset(line))
+                )
+                frames.append((frame, angle, arm, 0.0))
             return cls(frames, **of_building | about)
 
         axial: dict[str, float] = {}
@@ -457,32 +447,30 @@ class Weights:
                 self.of_floor[floor - 1].append((half, *at, 0.0))
 
     def _place(self, line: Line, along: float) -> tuple[float, float]:
-        across = "y" if line.along == "x" else "x"
-        arm = float(self.drawing.places(across)[line.number - 1])  # type: ignore[arg-type]
-        return (float(along), arm) if line.along == "x" else (arm, float(along))
+        place = float(along), self.drawing.offset(line)
+        return place if line.along == "x" else place[::-1]
 
-    def masses(self, floor_mass: tuple[float, ...], rule: str | None) -> tuple[Array, Array, Array]:
-        """Return masses, centres in plan and rotary inertia of the floors.
+    def masses(self) -> dict[str, Any]:
+        """Return masses, centres in plan and rotary inertia of the floors, as a building has them.
 
         Of loads the masses are where these are; masses that are given are spread as the loads, or
         where there are none evenly over the panels.
         """
         d = self.drawing
         lengths = np.array([sum(d.bays_x), sum(d.bays_y)])
-        rows = []
         whole = (1.0, *(0.5 * lengths), (lengths**2).sum() / 12.0)
+        table = np.empty((len(self.of_floor), 4))
         for i, weights in enumerate(self.of_floor):
             areas = [panel for _, _, panel in self.panels(i + 1)]
             weight, x, y, second = np.array(weights or areas or [whole]).T
             total = float(weight.sum())
             centre = np.array([weight @ x, weight @ y]) / total
             spread = weight @ (second + (x - centre[0]) ** 2 + (y - centre[1]) ** 2) / total
-            mass = floor_mass[i] if floor_mass else 0.0
-            if rule is not None:
+            mass = d.floor_mass[i] if d.floor_mass else 0.0
+            if d.mass is not None:
                 mass = total / STANDARD_GRAVITY if weights else 0.0
-            rows.append((mass, *(centre + d.eccentricity * lengths), mass * spread))
-        table = np.array(rows)
-        return table[:, 0], table[:, 1:3], table[:, 3]
+            table[i] = mass, *(centre + d.eccentricity * lengths), mass * spread
+        return {"floor_mass": table[:, 0], "centres": table[:, 1:3], "inertia": table[:, 3]}
 
 
 def _walls(
@@ -490,7 +478,7 @@ def _walls(
 ) -> Iterator[tuple[tuple[Along, int, int], tuple[WallSection, ...]]]:
     """Yield the sections of walls by direction, line and place; one wall stands in a place."""
     taken: dict[tuple[int, int], Any] = {}
-    for key, sections in (walls or {}).items():
+    for key, sections in _arguments.instance(walls or {}, "building: walls", dict).items():
         if not (isinstance(key, tuple) and len(key) == 3 and key[0] in ("x", "y")):
             raise InputError(
                 f"building: walls: {_arguments.shown(key)} must be (direction, line, place), as "
@@ -500,18 +488,7 @@ def _walls(
         most = lines[::-1] if along == "x" else lines
         number = _arguments.integer(line, f"building: walls: {key}: line", least=1, most=most[0])
         at = _arguments.integer(place, f"building: walls: {key}: place", least=1, most=most[1])
-        each = (
-            [sections]
-            if isinstance(sections, WallSection)
-            else _arguments.several(sections, f"building: walls: {key}", "WallSection")
-        )
-        for section in each:
-            _arguments.instance(section, f"building: walls: {key}", WallSection)
-        if len(each) not in (1, floors):
-            raise InputError(
-                f"building: walls: {key} has {len(each)} sections for {floors} storeys; give one, "
-                "or one for each"
-            )
+        each = sections_of_wall(sections, floors, str(key))
         where = (at, number) if along == "x" else (number, at)
         if where in taken:
             raise InputError(
@@ -519,28 +496,19 @@ def _walls(
                 "is no planar one: move one of them"
             )
         taken[where] = key
-        yield (along, number, at), tuple(each)
+        yield (along, number, at), each
 
 
-def _check_places(name: str, cells: Cells, words: tuple[str, ...], most: tuple[int, ...]) -> None:
-    """Refuse places that the grid does not have."""
-    for key in cells:
-        for word, at, last in zip(words, key, most, strict=True):
-            if not 0 <= at <= last:
-                raise InputError(
-                    f"building: {name}: {word} = {at}, but the building has {last}; correct it, or "
-                    "give 0 for all"
-                )
-
-
-def _by_floor(numbers: Any, floors: int, name: str) -> tuple[float, ...]:
-    values = _arguments.finite_vector(numbers, f"building: {name}", shape="1 or m")
-    if values.size not in (1, floors) or (values < 0.0).any():
+def by_floor(numbers: Any, floors: int, name: str, width: int = 1, least: float = -np.inf) -> Array:
+    """Return numbers or pairs of each floor, shape (floors, width)."""
+    values = _arguments.finite_vector(numbers, f"building: {name}", shape="any")
+    if values.size not in (width, width * floors) or (values < least).any():
+        each = "a number" if width == 1 else "a pair"
         raise InputError(
-            f"building: {name} = {_arguments.shown(numbers)} must be a number, or one for each of "
-            f"{floors} floors, not below 0"
+            f"building: {name} = {_arguments.shown(numbers)} must be {each}, or one for each of "
+            f"{floors} floors" + (", not below 0" if least == 0.0 else "")
         )
-    return tuple(np.broadcast_to(values, floors).tolist())
+    return np.broadcast_to(values.reshape(-1, width), (floors, width))
 
 
 def _is_post(kind: Any) -> bool:
