@@ -276,9 +276,11 @@ contains
          type(spring_record) :: one
          integer :: of_joint(first:max(last, 1)), i, k, rest, made, line
 
+         ! Which entry has the layers of each joint, and which is for all other joints.
          known = messages%count
          call assign('layers', of_joint, rest)
          if (messages%count > known) return
+         ! One spring for all joints becomes one for each where the layers of some are their own.
          if (any(of_joint > 0) .and. size(springs) == 1) then
             one = springs(1)
             deallocate (springs)
@@ -293,6 +295,7 @@ contains
             made = 0
             do i = 1, size(springs)
                if (of_joint(first + i - 1) /= k .or. springs(i)%rule /= 'layered') cycle
+               ! The first spring of an entry gets its layers; the others are copies of it.
                if (made == 0) then
                   made = i
                   call set_layers(list, springs(i), list%entry(k), messages)

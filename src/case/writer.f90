@@ -137,6 +137,7 @@ contains
          type(key_type), allocatable :: keys(:)
          type(key_visitor) :: v
 
+         ! Keys that have the values of a new spring are left out.
          call keys_of(entry%spring%rule, keys)
          new%group = entry%group
          call v%collect(entry%group)

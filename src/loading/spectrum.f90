@@ -65,6 +65,7 @@ contains
       parts = max(1, ceiling(steps_in_period*max(1.0_wp, 2.0_wp*damping)*dt/period))
       h = dt/parts
       call make_step(2.0_wp*pi*h/period, damping, step)
+      ! Displacement, and velocity times the step; accelerations times its square.
       z = 0.0_wp
       peak = 0.0_wp
       a0 = h**2*acceleration(1)

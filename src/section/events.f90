@@ -343,6 +343,7 @@ contains
       below = beyond(section, laws, rule, what, level, low)
       above = beyond(section, laws, rule, what, level, high)
       if (below >= 0.0_wp) high = low               ! true before it is bent
+      ! A side that is kept twice counts half, so that the secant moves it too.
       do i = 1, 100
          if (high%curvature - low%curvature <= 1.0e-10_wp*high%curvature) exit
          at = 0.5_wp*(low%curvature + high%curvature)

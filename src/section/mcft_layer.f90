@@ -109,6 +109,7 @@ contains
          call principal_stresses(layer%concrete, mean + radius, mean - radius, f_1, f_2, f11, f22, f21)
       end associate
       call steel_both(layer%stirrup, state%eps_z, f_sz, e_sz)
+      ! Shares of z in the principal directions 1 and 2.
       share_1 = 0.5_wp*(1.0_wp - c)
       share_2 = 0.5_wp*(1.0_wp + c)
       stress%sigma_x = f_1*share_2 + f_2*share_1

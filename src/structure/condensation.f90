@@ -84,10 +84,12 @@ contains
       integer :: i, j
 
       self%is_mechanism = .false.
+      ! Compliances that choose the basis, springs without stiffness as the softest.
       do j = 1, n
          self%soft(j) = 1.0_wp/max(abs(self%k(j)), no_stiffness*self%k0(j))
       end do
       call choose_basis(n, self%p, self%soft, weight, self%a, self%to_basis, self%basis)
+      ! Those beside the basis: of springs with stiffness, and the initial ones of springs without.
       do j = 1, n
          self%soft_shared(j) = 0.0_wp
          if (abs(self%k(j)) > no_stiffness*self%k0(j)) then
@@ -110,6 +112,7 @@ contains
          if (abs(self%soft(j)) > 0.0_wp) call add_compliance(self%a(:, j), self%soft(j), flexibility)
          if (self%soft_shared(j) > 0.0_wp) self%is_mechanism = .true.
       end do
+      ! See the head: D, (I + D k_B)^-1, and with the motions and forces of the basis K and dd.
       call invert(flexibility, k_basis, gain, determinant)
       motion = product_of(gain, self%to_basis)
       do j = 1, 3
@@ -151,6 +154,7 @@ contains
       end do
       basis = 0
       stiff = weight
+      ! The first three exchanges fill the basis, where one may; the others take softer springs into it.
       do exchanges = 1, 3 + 6*n
          largest = 0.0_wp
          if (exchanges > 3) largest = softer

@@ -70,6 +70,7 @@ contains
       ! Mostly one layer has come to its end, and all others have room.
       if (self%on_end > 0) call leave_end(self)
       do pass = 1, most_passes
+         ! Layers without stiffness together do not say how the joint opens as it turns.
          if (.not. self%a > no_stiffness*self%stiffness) exit
          self%opening_rate = -(self%s*rotation_rate + axial_rate)/self%a
          call distances_ahead(self, least_clearance)

@@ -327,6 +327,7 @@ contains
 
       table%rows = size(reaches)
       table%q(:table%rows) = reaches
+      ! Deformations over that at yield; y_u is where hardening ends at f_u.
       y_u = 1.0_wp
       if (is_given(self%f_u)) then
          b = self%k_post/self%k
@@ -340,6 +341,7 @@ contains
       if (self%plateau > 0.0_wp) then
          table%y(elements, :) = 1.0_wp + min(max(table%q - self%plateau, 0.0_wp), y_u - 1.0_wp)
       end if
+      ! With more plastic reach the corner gets rounder (a smaller r), and the strength grows.
       do j = 2, table%rows
          associate (before => table%y(:yielding, j - 1), y => table%y(:yielding, j))
             q = min(table%q(j), reaches(size(reaches)))

@@ -149,7 +149,7 @@ contains
    !> Lanes without runs, and the motions.
    subroutine create_batch(batch, damped, motion, level)
       type(batch_type), intent(inout), target :: batch
-      !> Whether the columns are
+      !> Whether the columns have damping
       logical, intent(in) :: damped
       type(ensemble_motion), intent(in) :: motion(:)
       integer, intent(in) :: level
@@ -159,6 +159,7 @@ contains
       integer :: first, clock, bodies, j, m, at
 
       batch%kernel = chosen_kernel(level)
+      ! The clock and the bodies of the lanes lie in one store, each from the start of a line of the cache.
       clock = line*ceiling(storage_size(batch%x)/real(line*storage_size(1.0_wp), wp))
       bodies = storage_size(batch%y)/storage_size(1.0_wp)
       allocate (batch%storage(line + clock + bodies), batch%lane(lanes))
@@ -168,6 +169,7 @@ contains
       call c_f_pointer(c_loc(batch%storage(first + clock)), batch%y)
       batch%x = lane_clock(damped=damped)
       batch%y = body_arrays()
+      ! All motions stand in one table, one behind the other.
       at = 0
       do j = 1, size(motion)
          at = at + size(motion(j)%time) + 2

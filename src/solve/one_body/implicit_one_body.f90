@@ -117,6 +117,8 @@ contains
                  d0_2 => springs%d0(2), f0_2 => springs%f0(2), k_2 => springs%k(2), &
                  q_1 => q(1), q_2 => q(2), v0_1 => v0(1), v0_2 => v0(2), a0_1 => a0(1), a0_2 => a0(2), &
                  g0_1 => g0(1), g0_2 => g0(2), largest_1 => largest(1), largest_2 => largest(2))
+         ! From these names it finds the end of the step: `to`, `v1`, `a1`, `g1`, what is left out of balance
+         ! (`rest`) and the forces to measure it by (`scale`).
          include 'implicit_step.inc'
       end associate
       ! NaN fails this comparison too.
@@ -133,6 +135,7 @@ contains
          self%scale = [scale_1, scale_2]
          call springs%carry_to(self%q)
       else
+         ! This is the trial from which the way along other lines is searched.
          self%work = start_1*moved_1 + start_2*moved_2
          self%push = push
          self%ground = ground

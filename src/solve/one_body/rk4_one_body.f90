@@ -100,6 +100,8 @@ contains
          about_1 = self%push(2)*load_force(1)
          about_2 = self%push(2)*load_force(2)
          about_3 = self%push(2)*load_force(3)
+         ! It makes four stages of the velocities `u` of the slip and `r` of the rotation, with accelerations
+         ! `a` and `b`, and moves q and v.
          include 'rk4_step.inc'
       end associate
       q(1) = q_1

@@ -195,6 +195,7 @@ contains
       integer :: j
 
       associate (current => self%current, trial => self%trial)
+         ! The trapezoidal rule, and its correction.
          work = self%curve%work([current%force, trial%force], [current%displacement, trial%displacement], &
                                 [current%force_rate, trial%force_rate], &
                                 [current%displacement_rate, trial%displacement_rate])
@@ -223,6 +224,7 @@ contains
             end if
          end do
          turnover = sum(abs(change*f)) + sum(abs(works))
+         ! What the energy balance of the way misses.
          residual = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
          done = .not. strict .or. abs(residual) <= max(self%most_work, turnover) &
                 *largest_residual(merge(1, 2, self%structure%kinematics == finite)) &

@@ -40,16 +40,13 @@ module rbs_solve_static_equilibrium
    !> A displacement, in shares of the height, or a rotation that is no more than round-off.
    real(wp), parameter :: of_round_off = 1.0e-12_wp
 
-   !> Rates that were found. They stay while no stiffness changes, as where a spring has come to a closed end
-   !> and is still on its line.
+   !> What the rates in the equilibrium are for. They stay while no stiffness changes, as where a spring has
+   !> come to a closed end and is still on its line.
    type :: known_rates
       !> Whether they serve, and whether the force was driven
       logical :: serve = .false., by_force = .false.
       !> Stiffnesses of the springs (springs), and rates of the position (coordinates)
       real(wp), allocatable :: k(:), rate(:)
-      !> As in the equilibrium
-      real(wp) :: force = 0.0_wp, displacement = 0.0_wp, dead_load_work = 0.0_wp
-      logical :: is_stable = .false.
    end type known_rates
 
    type :: equilibrium_type
@@ -175,7 +172,6 @@ contains
       real(wp) :: residual
 
       self%lost_digits = .false.
-      self%is_stable = .false.
       residual = displacement - self%structure%top_displacement(springs%d)
       if (.not. self%structure%in_series) then
          call follow_band(self, springs, by_force, residual, force, rate, found)
@@ -216,8 +212,12 @@ contains
          found = known%serve .and. (by_force .eqv. known%by_force)
          if (found) found = .not. any(abs(springs%k - known%k) > 0.0_wp)
          if (found) then
-            call take_known()
+            refines = structure%loses_digits
+            rate = known%rate
+            call structure%linearise(springs%k, self%tangent, self%unstable)
+            call find_residual(self, springs, force)
          else
+            self%is_stable = .false.
             ! Of joints without stiffness in series the band knows only the sum.
             if (by_force .or. .not. structure%loses_digits) call find_rates(springs%k, .false., found)
             ! A node between springs without stiffness is free to turn.
@@ -233,7 +233,10 @@ contains
             if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
             self%is_stable = self%matrix%negative == merge(1, 0, self%force_rate < 0.0_wp)
             self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
-            call keep_rates()
+            known%serve = self%unstable == 0 .and. .not. is_hardened
+            known%by_force = by_force
+            known%k = springs%k
+            known%rate = rate
          end if
          call solve(2, residual, settled)
          ! In a mechanism the correction of round-off is round-off itself; more than that is found by the row.
@@ -249,33 +252,6 @@ contains
       end associate
 
    contains
-
-      subroutine keep_rates()
-         associate (known => self%known)
-            known%serve = self%unstable == 0 .and. .not. is_hardened
-            known%by_force = by_force
-            known%k = springs%k
-            known%rate = rate
-            known%force = self%force_rate
-            known%displacement = self%displacement_rate
-            known%dead_load_work = self%dead_load_work_rate
-            known%is_stable = self%is_stable
-         end associate
-      end subroutine keep_rates
-
-      !> Rates that are known, and the residual.
-      subroutine take_known()
-         refines = self%structure%loses_digits
-         associate (known => self%known)
-            rate = known%rate
-            self%force_rate = known%force
-            self%displacement_rate = known%displacement
-            self%dead_load_work_rate = known%dead_load_work
-            self%is_stable = known%is_stable
-         end associate
-         call self%structure%linearise(springs%k, self%tangent, self%unstable)
-         call find_residual(self, springs, force)
-      end subroutine take_known
 
       !> Rates with given stiffnesses of the springs.
       subroutine find_rates(k, of_none, found)
@@ -526,12 +502,13 @@ contains
       end associate
    end subroutine follow_diagonal
 
-   !> Save or restore the rates.
+   !> Save or restore the rates; those that are restored are not of the last factor.
    subroutine serialize(self, stream)
       class(equilibrium_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
       call stream%items(self%force_rate, self%displacement_rate, self%dead_load_work_rate)
+      if (stream%restoring) self%known%serve = .false.
    end subroutine serialize
 
 end module rbs_solve_static_equilibrium

@@ -125,6 +125,7 @@ contains
             self%last_direction = self%direction
          end if
          if (self%goes_back) then
+            ! The way back has no end, or it leads beyond all that was reached on the other side.
             if (self%ends == 0 .or. direction*self%finish < -max(abs(target), self%farthest)) then
                call report_fall(self, target, error)
                return
@@ -133,6 +134,7 @@ contains
             call end_line(self)
             call report_corner()
          else if (direction*(self%finish - target) > on_the_end*abs(target)) then
+            ! The line goes beyond the target, ends before it, or ends there.
             call go(self, target)
          else if (direction*(self%finish - target) < -on_the_end*abs(target)) then
             call go(self, self%finish)
@@ -204,6 +206,7 @@ contains
                                    found)
       self%lost_digits = self%equilibrium%lost_digits
       self%is_stable = self%equilibrium%is_stable
+      ! They are rates per unit of the driven quantity; the path may go against it.
       if (direction < 0) self%rate = -self%rate
       if (is_spent(self)) call rest(self%moving, self%structure%initial_stiffness, &
                                     self%equilibrium%force_rate, self%rate)

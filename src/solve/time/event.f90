@@ -132,6 +132,7 @@ contains
       integer :: direction
 
       direction = direction_of(v(1))
+      ! The velocity is linear in the step, and passes zero at the reversal.
       reversal = huge(1.0_wp)
       if (v(1)*v(2) < 0.0_wp) reversal = h*v(1)/(v(1) - v(2))
       if (direction /= 0 .and. reversal < h) then
@@ -147,6 +148,7 @@ contains
             return
          end if
       end if
+      ! Whether the end of the step, without a way there and back, is off the line.
       direction = direction_of(d(2) - d(1))
       if (reversal < h) direction = -direction_of(v(1))
       if (direction == 0) return

@@ -57,6 +57,8 @@ contains
       type(turned_body), intent(out) :: body
       real(wp) :: s, c, sg, sg_rate, half
 
+      ! Directions t and e of the head: at the end (1), in the mean of both ends (m), and those of the mean
+      ! rotation (b); sg = sin(half)/half by its series where both vanish.
       half = 0.5_wp*change
       s = sin(from)
       c = cos(from)
@@ -175,6 +177,8 @@ contains
       integer :: i
 
       f = joint%sign*forces
+      ! How the gap of the joint moves, in space, with each number of the state: place and rotation of the
+      ! body below (1 to 3), axial force (4), place and rotation of the body above (5 to 7).
       moved = 0.0_wp
       moved(1, 1) = -1.0_wp
       moved(2, 2) = -1.0_wp
@@ -182,6 +186,7 @@ contains
       moved(2, 6) = 1.0_wp
       moved(:, 3) = -joint%below*below%t1
       moved(:, 7) = -joint%above*above%t1
+      ! Slip and opening are the parts of the gap along the directions of the body below, which turn.
       do i = 1, local
          shear(i) = k(1)*(below%t1(1)*moved(1, i) + below%t1(2)*moved(2, i))
          opening(i) = below%e1(1)*moved(1, i) + below%e1(2)*moved(2, i)
@@ -203,6 +208,7 @@ contains
          force(:, i) = shear(i)*below%tm + tension(i)*below%em
       end do
       force(:, 3) = force(:, 3) + half*(f(3)*below%t1 - f(1)*below%e1)
+      ! Both bodies take the force and its moment about their centroids.
       do i = 1, local
          tangent(1:2, i) = -force(:, i)
          tangent(3, i) = -joint%below*sum(below%tb*force(:, i)) - shear(i)*arms(1) &

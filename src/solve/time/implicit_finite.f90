@@ -91,6 +91,7 @@ contains
       self%searches_uphill = .false.
       n = self%column%n
       m = self%column%unknowns
+      ! Unknowns of a body: its place and rotation, and the axial force of its joint if that does not open.
       self%per = merge(3, 4, self%column%opens)
       self%half_width = merge(5, 6, self%column%opens)
       allocate (self%mass(3, n), self%r(3, n), self%dx(3, n), source=0.0_wp)
@@ -107,6 +108,7 @@ contains
          self%mass(1, :) = column%mass
          self%mass(2, :) = column%mass
          self%mass(3, :) = column%inertia
+         ! Joint i is between bodies i - 1 and i, at its distances from their centroids; body 0 is the ground.
          do i = 1, n
             joint(i)%lower = i - 1
             joint(i)%upper = i
@@ -115,6 +117,7 @@ contains
          end do
          if (column%held) joint(n) = joint_type(lower=n, upper=n - 1, sign=-1.0_wp, &
                                                 above=-column%upper(n - 1), below=0.0_wp)
+         ! An axial force that no opening gives is that of the equation of motion.
          call now%create(column)
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
          call column%accelerate(state%q, state%v, now%f, state%load, now%work, now%a)
@@ -246,6 +249,7 @@ contains
 
          associate (by => self%by, h => self%h)
             if (self%average) then
+               ! The means over the step are in balance, else a state between its start and its end.
                call end_of_step(size(self%moved), h, self%moved, self%v0, self%v1, self%a1)
                self%seen = self%turned
                call find_mean_forces()

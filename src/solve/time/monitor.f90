@@ -301,6 +301,7 @@ contains
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
          if (.not. open(self%watch(i)%state)) cycle
+         ! Values at both ends of the step and their rates per step, of a cubic.
          value(:2) = [value_at(q0, v0, 0.0_wp), value_at(q1, v1, 0.0_wp)]
          value(3:) = [value_at(q0, v0, h) - value(1), value_at(q1, v1, h) - value(2)]
          share = first_at(value, self%watch(i)%threshold)

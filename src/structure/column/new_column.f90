@@ -225,6 +225,7 @@ contains
       column%axial_count = 2*n
       column%work_size = 5*n
       column%base_spring = column%at(shear, 1)
+      ! Translations, rotations, and openings if there are some.
       allocate (column%group(merge(3, 2, column%opens)))
       column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
       column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))

@@ -154,6 +154,7 @@ contains
       real(wp) :: force, moment, half, top, turned
       integer :: i
 
+      ! Of a joint are known: its inverse pivots (1, 2), T (3, 4) and C (5 to 7).
       force = 0.0_wp
       moment = 0.0_wp
       do i = self%n, 1, -1

@@ -287,6 +287,7 @@ contains
             p(:, at + 1) = turn(1, j)*of%about_centre(:, 2) - turn(2, j)*of%about_centre(:, 1)
          end associate
       end do
+      ! The elastic rest of the member: along its axis, in double and in single curvature.
       i = self%inner
       if (self%rest_along > 0.0_wp) then
          i = i + 1

@@ -542,6 +542,8 @@ contains
       integer :: i, along
 
       reported = .false.
+      ! A rigid member has a multiple of the stiffness of the stiffest of the others or, if all are rigid, of
+      ! the springs of nodes.
       stiffest = 0.0_wp
       all_rigid = all([(is_rigid(record%kind(self%member(i)%kind_of), record%spring), &
                         i=1, size(self%member))])

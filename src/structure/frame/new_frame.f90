@@ -206,6 +206,7 @@ contains
       do i = 1, size(member)
          pair(:, i) = member(i)%node
       end do
+      ! The node whose unknown along x, along y or of the rotation a node has.
       do i = 1, size(node)
          leader(i, :) = i
          if (node(i)%like > 0) leader(i, 1) = node(i)%like
@@ -246,6 +247,7 @@ contains
             end do
          end associate
       end do
+      ! Nodes that move alike have the numbers of their leader.
       do i = 1, size(node)
          frame%number(:, i) = [(frame%number(j, leader(i, j)), j=1, 3)]
          associate (of => node(leader(i, 1)))
@@ -331,6 +333,7 @@ contains
             do i = 1, 2
                associate (end_node => member%node(i))
                   if (.not. node(end_node)%follows_floor()) cycle
+                  ! Along x it moves as its floor moves and turns, in shares.
                   follows(3*i - 2) = 3*i - 2
                   share(3*i - 2) = frame%share(1, end_node)
                   do j = 1, 2
@@ -546,12 +549,14 @@ contains
             associate (clear => e%length)
                e%node = m%node
                call find_numbers(frame, node, m, i, e%number, e%width, end_of, factor)
+               ! Elongation and rotations of both ends off the chord, from the motions of the two nodes.
                e%to_basic(1, :6) = [-axis, 0.0_wp, axis, 0.0_wp]
                ! The chord turns clockwise as its end moves across.
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
                e%to_basic(2, :6) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
                e%to_basic(3, :6) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
                if (m%pinned) e%to_basic(2:, :) = 0.0_wp
+               ! Rotations of the rigid ends and of the chord, on which axial forces do second-order work.
                e%lean(1, 3) = 1.0_wp
                e%lean(2, 6) = 1.0_wp
                e%lean(3, :6) = chord

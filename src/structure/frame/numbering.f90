@@ -100,6 +100,7 @@ contains
                if (is_seen(node)) cycle
                is_seen(node) = .true.
                last = last + 1
+               ! Put it in its place among the neighbours of this node.
                j = last
                do while (j > begin)
                   if (.not. comes_before(node, order(j - 1))) exit
