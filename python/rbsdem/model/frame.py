@@ -108,7 +108,7 @@ class FrameMember:
         _arguments.convert(self, "FrameMember")
         rigid: Any = self.rigid_end
         if isinstance(rigid, (tuple, list)):
-            rigid = tuple(_arguments.number(one, "FrameMember: rigid_end") for one in rigid)
+            rigid = tuple(_arguments.number(length, "FrameMember: rigid_end") for length in rigid)
             if len(rigid) != 2:
                 raise InputError(
                     f"FrameMember: rigid_end has {len(rigid)} values; give one, or two"
@@ -158,7 +158,7 @@ class FrameMember:
 
         `drawn` has the names of drawings by sections; without its own they are left out.
         """
-        found: list[Any] = [
+        groups: list[Any] = [
             ("member_kind", {
                 "name": _core.Text(name),
                 **self._elastic(),
@@ -180,10 +180,10 @@ class FrameMember:
             for position, spring in self._springs(group):
                 positions.setdefault(spring, []).append(position)
             for spring, where in positions.items():
-                found.append((group, {"kind": _core.Text(name), "position": where}, spring))
+                groups.append((group, {"kind": _core.Text(name), "position": where}, spring))
         if self.axial_spring is not None:
-            found.append(("axial_spring", {"kind": _core.Text(name)}, self.axial_spring))
-        return found
+            groups.append(("axial_spring", {"kind": _core.Text(name)}, self.axial_spring))
+        return groups
 
     def _drawing(self, drawn: Mapping[Any, dict[str, Any]]) -> dict[str, Any]:
         """Return the keys of its sections, and of what is known of its springs by them."""
@@ -286,19 +286,19 @@ class FrameNode:
     def _groups(self, **more: str | None) -> list[Any]:
         """Return the groups of a case file; `more` are names that a building gives it."""
         values = {
-            own.name: getattr(self, own.name) or None
-            for own in fields(self)
-            if own.name not in (*_PLACES, "panel", "x", "y", "floor")
+            key.name: getattr(self, key.name) or None
+            for key in fields(self)
+            if key.name not in (*_PLACES, "panel", "x", "y", "floor")
         }
         for name in ("name", "moves_with"):
             if values[name]:
                 values[name] = _core.Text(values[name])
         names = {name: _core.Text(value) if value else None for name, value in more.items()}
-        own = values | {"x": self.x, "y": self.y, "floor": self.floor} | names
+        node = values | {"x": self.x, "y": self.y, "floor": self.floor} | names
         place = {"node": _core.Text(self.name)}
         springs = [(group, place, getattr(self, group)) for group in _PLACES]
         springs.append(("flexure", {"panel": place["node"]}, self.panel))
-        return [("node", own), *(entry for entry in springs if entry[2] is not None)]
+        return [("node", node), *(entry for entry in springs if entry[2] is not None)]
 
 
 @dataclass(frozen=True)
@@ -549,7 +549,7 @@ def rules_of(
     """
     sides = {"outer": [1, lines], "inner": list(range(2, lines))}
     sides = {word: numbers for word, numbers in sides.items() if len(set(numbers)) > 1}
-    items, found = list(cells.items()), []
+    items, rules = list(cells.items()), []
     while items:
         (line, storey), cell = items[0]
         place: dict[str, Any] = {at: line or None, level: storey or None}
@@ -562,9 +562,9 @@ def rules_of(
                 for _, other in following
             ):
                 place, count = {f"{at}s": word, level: storey or None}, len(numbers)
-        found.append((place, cell))
+        rules.append((place, cell))
         del items[:count]
-    return found
+    return rules
 
 
 def at_place(cells: Mapping[Any, Any], *place: int) -> Any:
@@ -683,7 +683,7 @@ def groups_of_cells(
     drawn : mapping
         Keys that name the drawings of the other cells.
     """
-    found: list[Group] = []
+    groups: list[Group] = []
     kinds: dict[int, str] = {}
     for place, cell in places:
         if isinstance(cell, FrameMember):
@@ -692,8 +692,8 @@ def groups_of_cells(
             kind = {"kind": _core.Text(kinds[id(cell)])} | rigid_lengths(cell.rigid_end)
         else:
             kind = drawn[cell] if cell is not None else {"kind": _core.Text("none")}
-        found.append((group, place | kind))
-    return found
+        groups.append((group, place | kind))
+    return groups
 
 
 def rigid_lengths(rigid_end: float | tuple[float, float]) -> dict[str, float | None]:

@@ -171,12 +171,12 @@ def frame(
     return drawn
 
 
-def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
+def mode(modes: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
     """Draw the shape of a natural mode of a frame, its largest displacement a tenth of the frame.
 
     Parameters
     ----------
-    found : FrameModes
+    modes : FrameModes
         The modes, as `rbsdem.modes` returns them for a frame.
     number : int, optional
         Which mode, from 1, the one with the longest period.
@@ -188,27 +188,27 @@ def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, in m.
     """
-    _arguments.instance(found, "plot.mode", FrameModes, "as of rbsdem.modes(frame)")
-    count = found.period.size
+    _arguments.instance(modes, "plot.mode", FrameModes, "as of rbsdem.modes(frame)")
+    count = modes.period.size
     at = _arguments.integer(number, "plot.mode: number") - 1
     if not 0 <= at < count:
         raise InputError(f"plot.mode: number = {number}: there are {count} modes, from 1")
-    structure, row = found.frame, at
-    scale = 0.1 * _size(structure) / float(np.hypot(found.x[:, at], found.y[:, at]).max())
+    structure, row = modes.frame, at
+    scale = 0.1 * _size(structure) / float(np.hypot(modes.x[:, at], modes.y[:, at]).max())
     still = SpringRotations({name: np.zeros(2) for name in structure.geometry}, {})
     shapes: Any = SimpleNamespace(
-        frame=structure, x=found.x.T, y=found.y.T, node_rotation=found.node_rotation.T
+        frame=structure, x=modes.x.T, y=modes.y.T, node_rotation=modes.node_rotation.T
     )
     with axes_or_new(ax, _figure_size(structure)) as drawn:
         _draw_supports(drawn, structure, _size(structure))
         moved = _undeformed(drawn, structure, False)
-        moved = moved + scale * np.column_stack((found.x[:, at], found.y[:, at]))
+        moved = moved + scale * np.column_stack((modes.x[:, at], modes.y[:, at]))
         for member in structure.geometry.values():
             bent = deformed(shapes, member, row, scale, still)
             nodes = moved[[member.start, member.end]]
             drawn.plot(*np.vstack((nodes[:1], bent, nodes[1:])).T, **MEMBER)
-        share = 100 * found.participation[at]
-        drawn.set_title(f"Mode {number}: {found.period[at]:.3g} s, {share:.0f} % of the mass")
+        share = 100 * modes.participation[at]
+        drawn.set_title(f"Mode {number}: {modes.period[at]:.3g} s, {share:.0f} % of the mass")
         _dress(drawn, structure)
     return drawn
 
@@ -391,13 +391,13 @@ def _numbered(
     members: list[MemberGeometry], values: list[Array], force: str
 ) -> list[tuple[int, int]]:
     """Return the members and places at which numbers are written."""
-    found = []
+    places_of = []
     if len(members) > _NAMED:
         for upright in (True, False):
-            own = [i for i, one in enumerate(members) if one.upright is upright]
-            i = max(own, key=lambda i: float(np.abs(values[i]).max()), default=-1)
-            found += [(i, int(np.abs(values[i]).argmax()))] if own else []
-        return found
+            alike = [i for i, member in enumerate(members) if member.upright is upright]
+            i = max(alike, key=lambda i: float(np.abs(values[i]).max()), default=-1)
+            places_of += [(i, int(np.abs(values[i]).argmax()))] if alike else []
+        return places_of
     for i, value in enumerate(values):
         places = {0, value.size - 1}
         if np.ptp(value) <= 1e-9 * abs(value[0]):
@@ -405,8 +405,8 @@ def _numbered(
         elif force == "moment":
             turns = int(value.argmax()), int(value.argmin())
             places |= {at for at in turns if 2 < at < value.size - 3}
-        found += [(i, at) for at in sorted(places) if value[at]]
-    return found
+        places_of += [(i, at) for at in sorted(places) if value[at]]
+    return places_of
 
 
 def row_of(result: Result, row: int) -> int:
@@ -440,7 +440,7 @@ def scale_of(scale: float | None, moved: Array, size: float, who: str) -> float:
 def _rounded(value: float) -> float:
     """Return the nearest of 1, 2, 5, 10 and so on."""
     power = 10.0 ** np.floor(np.log10(value))
-    return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
+    return float(min((1, 2, 5, 10), key=lambda digit: abs(np.log(digit * power / value))) * power)
 
 
 class SpringRotations(NamedTuple):
@@ -462,20 +462,20 @@ class SpringRotations(NamedTuple):
 def spring_rotations(result: FrameResult, row: int | NDArray[np.intp]) -> SpringRotations:
     """Return the rotations of the springs by their members and nodes."""
     structure = result.frame
-    found = SpringRotations(
+    turns = SpringRotations(
         {name: np.zeros((*np.shape(row), 2)) for name in structure.parts.members}, {}
     )
     if "rotation" not in result.springs:
-        return found
+        return turns
     turned, moments = result.springs["rotation"][row], result.springs["moment"][row]
     for i, spring in enumerate(structure.parts.springs_of("flexure")):
         if spring.group == "panel":
-            found.panels[spring.member] = turned[..., i]
+            turns.panels[spring.member] = turned[..., i]
         elif spring.position in (0.0, 1.0):
             elastic = structure.kinds[spring.member].yield_moment is not None
             turn = turned[..., i] - (moments[..., i] / spring.stiffness if elastic else 0.0)
-            found.hinges[spring.member][..., int(spring.position)] = turn
-    return found
+            turns.hinges[spring.member][..., int(spring.position)] = turn
+    return turns
 
 
 def cubic(across: Array, slopes: Array, shares: Array) -> Array:
@@ -601,18 +601,18 @@ def _draw_infills(
         if event.group == "infill" and event.time <= result.time[row]:  # type: ignore[union-attr]
             reached[event.member] = max(reached.get(event.member, ""), event.name, key=states.index)
     drawn = set()
-    for one in structure.infilled:
+    for infill in structure.infilled:
         at = [
             names.index(f"N-{line}-{floor}")
             for line, floor in (
-                (one.bay, one.storey - 1), (one.bay + 1, one.storey - 1),
-                (one.bay + 1, one.storey), (one.bay, one.storey),
+                (infill.bay, infill.storey - 1), (infill.bay + 1, infill.storey - 1),
+                (infill.bay + 1, infill.storey), (infill.bay, infill.storey),
             )
         ]  # fmt: skip
         middle = moved[at].mean(axis=0)
-        shares = np.array([one.length / one.run, one.height / one.rise])
+        shares = np.array([infill.length / infill.run, infill.height / infill.rise])
         corners = middle + shares * (moved[at] - middle)
-        state = max((reached.get(strut, "") for strut in one.struts), key=states.index)
+        state = max((reached.get(strut, "") for strut in infill.struts), key=states.index)
         label, fill = _PANELS[state]
         ax.fill(*corners.T, facecolor=fill, label="_" if state in drawn else label, **_PANEL)
         drawn.add(state)
@@ -634,8 +634,8 @@ def _mark_members(
         members = [member for member, state in failed.items() if state == name]
         if members:
             places = [
-                deformed(result, result.frame.geometry[one], row, scale, turns, np.array([0.5]))[0]
-                for one in members
+                deformed(result, result.frame.geometry[each], row, scale, turns, np.array([0.5]))[0]
+                for each in members
             ]
             mark = HINGE | {"markersize": 6.5} | _MARKS[name]
             ax.plot(*np.array(places).T, **mark, label=label)
@@ -770,12 +770,12 @@ _NOT_COVERED = "0.75"
 _POINT: dict[str, Any] = {"marker": "o", "markersize": 4.5, "color": "#c0392b", "zorder": 5}
 
 
-def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
+def target(goal: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw a target displacement: curve, its two lines and the spectrum as those of one mass.
 
     Parameters
     ----------
-    found : Target
+    goal : Target
         What `rbsdem.codes.target` returned.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
@@ -788,18 +788,18 @@ def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
         Acceleration over displacement of the equivalent mass: base shear over the effective mass,
         displacement over the participation of the first mode.
     """
-    _arguments.instance(found, "plot.target", Target, "as of rbsdem.codes.target")
-    curve, lines, gamma = found.curve, found.lines, found.curve.gamma
+    _arguments.instance(goal, "plot.target", Target, "as of rbsdem.codes.target")
+    curve, lines, gamma = goal.curve, goal.lines, goal.curve.gamma
     per_g = 1.0 / (gamma * curve.modal_mass * STANDARD_GRAVITY)
-    at = found.displacement / gamma
-    periods = found.spectrum.period
+    at = goal.displacement / gamma
+    periods = goal.spectrum.period
     periods = np.concatenate((np.linspace(0.0, periods[1], 20), periods[2:]))
-    inside = [one for one in periods if _inside(found, one)]
-    sa = np.array([found.spectrum.sa(one) for one in inside]) / STANDARD_GRAVITY
-    sd = np.array([found.spectrum.sd(one) for one in inside])
+    inside = [period for period in periods if _inside(goal, period)]
+    sa = np.array([goal.spectrum.sa(period) for period in inside]) / STANDARD_GRAVITY
+    sd = np.array([goal.spectrum.sd(period) for period in inside])
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         drawn.plot(
-            factor("m") * sd, sa, **{**TEST_LINE, "linestyle": "-"}, label=found.spectrum.name
+            factor("m") * sd, sa, **{**TEST_LINE, "linestyle": "-"}, label=goal.spectrum.name
         )
         shown = line_of({**MODEL_LINE, "label": "push-over"}, line)
         drawn.plot(factor("m") * curve.displacement / gamma, curve.force * per_g, **shown)
@@ -809,15 +809,15 @@ def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
         drawn.plot(factor("m") * corners / gamma, forces * per_g, **look, label="two lines")
         top = 1.08 * max(float(sa.max()), float(curve.force.max()) * per_g)
         # The capacity spectrum has its point on the secant.
-        shown_period = found.factors.get("T_sec", found.period)
+        shown_period = goal.factors.get("T_sec", goal.period)
         slope = (2.0 * np.pi / shown_period) ** 2 / STANDARD_GRAVITY
         drawn.plot([0.0, factor("m") * top / slope], [0.0, top], **{**ZERO_LINE, "color": "0.6"})
-        name = _NAMES[found.method]
-        if found.reached:
-            height = found.base_shear * per_g
+        name = _NAMES[goal.method]
+        if goal.reached:
+            height = goal.base_shear * per_g
             drawn.vlines(factor("m") * at, 0.0, height, **{**look, "linestyle": ":"})
             scale, unit = paper("m")
-            words = f"{name}: roof {_short(scale * found.displacement)} {unit}"
+            words = f"{name}: roof {_short(scale * goal.displacement)} {unit}"
             drawn.plot([factor("m") * at], [height], **_POINT, linestyle="none", label=words)
         else:
             drawn.plot([], [], linestyle="none", label=f"{name}: beyond the end of the curve")
@@ -830,21 +830,21 @@ def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
     return drawn
 
 
-def _inside(found: Target, period: float) -> bool:
+def _inside(goal: Target, period: float) -> bool:
     """Return whether a spectrum of points has a period."""
     try:
-        found.spectrum.sa(period)
+        goal.spectrum.sa(period)
     except InputError:
         return False
     return True
 
 
-def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axes:
+def assessment(assessed: Assessment, *, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw a frame with ends of members and joints in the colours of the levels that they exceed.
 
     Parameters
     ----------
-    found : Assessment
+    assessed : Assessment
         What `rbsdem.codes.assess` returned.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
@@ -856,16 +856,16 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
     matplotlib.axes.Axes
         The axes, in m. Members that exceed their shear strength have the colour of the last level.
     """
-    _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
-    if isinstance(found.result, BuildingResult):
-        name = found.result.building.planes[0].name
+    _arguments.instance(assessed, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
+    if isinstance(assessed.result, BuildingResult):
+        name = assessed.result.building.planes[0].name
         raise InputError(
             "plot.assessment: it is of a building; give that of one of its frames, as "
             f"assessment.frame({name!r})"
         )
-    structure, states = found.result.frame, found.states()
-    names = ["no level exceeded", *(f"{name} exceeded" for name in found.levels)]
-    names[-1] += ", or shear strength" if found.counts()["shear"] else ""
+    structure, states = assessed.result.frame, assessed.states()
+    names = ["no level exceeded", *(f"{name} exceeded" for name in assessed.levels)]
+    names[-1] += ", or shear strength" if assessed.counts()["shear"] else ""
     with axes_or_new(ax, _figure_size(structure)) as drawn:
         _draw_supports(drawn, structure, _size(structure))
         _undeformed(drawn, structure, True)

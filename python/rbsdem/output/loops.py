@@ -358,12 +358,12 @@ def calibration(
     return np.asarray(axes)
 
 
-def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
+def code_comparison(compared: CodeComparison, *, ax: Axes | None = None) -> Axes:
     """Draw the loop, the test if there is one, the backbones, and drifts of damage.
 
     Parameters
     ----------
-    found : CodeComparison
+    compared : CodeComparison
         The comparison, as `rbsdem.codes.compare` returns it.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
@@ -373,19 +373,19 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes.
     """
-    result = found.result
+    result = compared.result
     height = result.column.height
     with axes_or_new(ax, (6.2, 3.4)) as drawn:
-        if found.test is not None:
-            d, f = found.test
+        if compared.test is not None:
+            d, f = compared.test
             drawn.plot(100 * d / height, factor("N") * f, **TEST_LINE, label="test")
         drift, force = 100 * result.drift, factor("N") * result.loop_force
         drawn.plot(drift, force, color="0.6", linewidth=0.6, zorder=2.5, label="model")
-        for line in found.backbones:
-            strength = factor("N") * line.force(found.span, found.leaning)
+        for line in compared.backbones:
+            strength = factor("N") * line.force(compared.span, compared.leaning)
             way = _above_zero(100 * line.drift, strength)
             drawn.plot(*way, label=line.name, **_BACKBONE, **_BACKBONES[line.name])
-        drifts = found.to_pandas()
+        drifts = compared.to_pandas()
         for row, source, label, fill in _DAMAGE:
             if source in drifts and np.isfinite(drifts.loc[row, source]):
                 look: Line = {"marker": "v" if row == "spalling" else "P", "mfc": fill}

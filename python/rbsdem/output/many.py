@@ -24,12 +24,12 @@ _STYLES = ("--", "-", "--")
 _COLOURS = ("#1f77b4", "#2ca02c", "#e67e22", "#c0392b", "#6c3483", "#000000")
 
 
-def ida(found: IDA, *, edp: str | None = None, ax: Axes | None = None, **line: Any) -> Axes:
+def ida(analysis: IDA, *, edp: str | None = None, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw the curve of every record, its collapse, and the 16, 50 and 84 % fractiles.
 
     Parameters
     ----------
-    found : IDA
+    analysis : IDA
         The analysis.
     edp : str, optional
         Measure of the response, by default `Runs.drift_measure`.
@@ -38,36 +38,38 @@ def ida(found: IDA, *, edp: str | None = None, ax: Axes | None = None, **line: A
     **line
         Keywords of the lines of the fractiles.
     """
-    edp = edp or found.runs.drift_measure
+    edp = edp or analysis.runs.drift_measure
     percent = 100.0 if edp.endswith("drift") else 1.0
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        for column, motion in np.ndindex(found.lower.shape):
-            level, response = found.curve(motion, list(found.runs.columns)[column], edp)
+        for column, motion in np.ndindex(analysis.lower.shape):
+            level, response = analysis.curve(motion, list(analysis.runs.columns)[column], edp)
             stands = np.isfinite(response)
             drawn.plot(percent * response[stands], level[stands], **_RECORD)
             if not stands.all():
                 last = percent * response[stands][-1]
                 drawn.plot([last], [level[stands][-1]], **_COLLAPSE, markersize=3)
-        level, fractiles = found.fractiles(edp=edp)
+        level, fractiles = analysis.fractiles(edp=edp)
         for values, style, name in zip(fractiles, _STYLES, ("16 %", "50 %", "84 %"), strict=True):
             stands = np.isfinite(values)
-            given = line_of(MODEL_LINE | {"linestyle": style, "label": name}, line)
+            look = line_of(MODEL_LINE | {"linestyle": style, "label": name}, line)
             x, y = percent * values[stands], level[stands]
-            drawn.plot(np.append(0.0, x), np.append(0.0, y), **given)
+            drawn.plot(np.append(0.0, x), np.append(0.0, y), **look)
         if ax is None:
-            _label_response(drawn, edp, found.runs)
+            _label_response(drawn, edp, analysis.runs)
             drawn.set_ylim(bottom=0)
             drawn.set_xlim(left=0)
             drawn.legend()
     return drawn
 
 
-def stripes(found: Stripes, *, edp: str | None = None, ax: Axes | None = None, **line: Any) -> Axes:
+def stripes(
+    analysis: Stripes, *, edp: str | None = None, ax: Axes | None = None, **line: Any
+) -> Axes:
     """Draw the response of every run over its level; collapses stand at the right edge.
 
     Parameters
     ----------
-    found : Stripes
+    analysis : Stripes
         The analysis.
     edp : str, optional
         Measure of the response, by default `Runs.drift_measure`.
@@ -76,20 +78,22 @@ def stripes(found: Stripes, *, edp: str | None = None, ax: Axes | None = None, *
     **line
         Keywords of the points.
     """
-    edp = edp or found.runs.drift_measure
+    edp = edp or analysis.runs.drift_measure
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        _points(drawn, found.runs, edp, line)
+        _points(drawn, analysis.runs, edp, line)
         if ax is None:
-            _label_response(drawn, edp, found.runs)
+            _label_response(drawn, edp, analysis.runs)
     return drawn
 
 
-def fragility(found: Fragility, *, level: float = 0.9, ax: Axes | None = None, **line: Any) -> Axes:
+def fragility(
+    fitted: Fragility, *, level: float = 0.9, ax: Axes | None = None, **line: Any
+) -> Axes:
     """Draw the curve, its confidence band and the data that it was fitted to.
 
     Parameters
     ----------
-    found : Fragility
+    fitted : Fragility
         The curve.
     level : float, optional
         Confidence of the band; 0 draws none.
@@ -98,33 +102,33 @@ def fragility(found: Fragility, *, level: float = 0.9, ax: Axes | None = None, *
     **line
         Keywords of the curve.
     """
-    width = max(found.beta, 0.05)
-    x = found.theta * np.exp(np.linspace(-2.8 * width, 2.8 * width, 200))
+    width = max(fitted.beta, 0.05)
+    x = fitted.theta * np.exp(np.linspace(-2.8 * width, 2.8 * width, 200))
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        look = line_of(MODEL_LINE | {"label": found.name}, line)
-        curve = drawn.plot(x, found.probability(x), **look)[0]
+        look = line_of(MODEL_LINE | {"label": fitted.name}, line)
+        curve = drawn.plot(x, fitted.probability(x), **look)[0]
         if level:
             # Where the bootstrap determines no band none is drawn.
             with suppress(InputError):
-                low, high = found.band(x, level)
+                low, high = fitted.band(x, level)
                 drawn.fill_between(x, low, high, color=curve.get_color(), alpha=0.15, linewidth=0)
-        at, share = _shares(found)
+        at, share = _shares(fitted)
         drawn.plot(at, share, **_POINT | {"color": curve.get_color()})
         if ax is None:
-            drawn.set(xlabel=found.intensity_name, ylabel="Probability", ylim=(0, 1.02))
+            drawn.set(xlabel=fitted.intensity_name, ylabel="Probability", ylim=(0, 1.02))
             drawn.set_xlim(left=0)
-            drawn.set_title(f"{found.name}: θ = {found.theta:.3g}, β = {found.beta:.2f}")
+            drawn.set_title(f"{fitted.name}: θ = {fitted.theta:.3g}, β = {fitted.beta:.2f}")
     return drawn
 
 
 def fragilities(
-    found: Mapping[str, Fragility], *, level: float = 0.9, ax: Axes | None = None
+    curves: Mapping[str, Fragility], *, level: float = 0.9, ax: Axes | None = None
 ) -> Axes:
     """Draw the curves of several limit states in one figure.
 
     Parameters
     ----------
-    found : mapping of Fragility
+    curves : mapping of Fragility
         The curves by name.
     level : float, optional
         Confidence of the bands; 0 draws none.
@@ -132,25 +136,25 @@ def fragilities(
         Axes to draw on; by default new ones.
     """
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        for number, (name, curve) in enumerate(found.items()):
+        for number, (name, curve) in enumerate(curves.items()):
             label = f"{name}: θ = {curve.theta:.3g}, β = {curve.beta:.2f}"
             colour = _COLOURS[number % len(_COLOURS)]
             fragility(curve, level=level, ax=drawn, label=label, color=colour)
-        if ax is None and found:
-            drawn.set(xlabel=next(iter(found.values())).intensity_name, ylabel="Probability")
+        if ax is None and curves:
+            drawn.set(xlabel=next(iter(curves.values())).intensity_name, ylabel="Probability")
             drawn.set_ylim(0, 1.02)
             drawn.set_xlim(left=0)
             drawn.legend()
     return drawn
 
 
-def _shares(found: Fragility) -> tuple[Any, Any]:
+def _shares(fitted: Fragility) -> tuple[Any, Any]:
     """Return intensities, and the share of runs that reached the limit state there."""
-    if isinstance(found.data, Counts):
-        return found.data.intensity, found.data.failures / found.data.number
-    if isinstance(found.data, Capacities):
-        values = np.sort(found.data.values[np.isfinite(found.data.values)])
-        return values, (np.arange(values.size) + 0.5) / found.data.size
+    if isinstance(fitted.data, Counts):
+        return fitted.data.intensity, fitted.data.failures / fitted.data.number
+    if isinstance(fitted.data, Capacities):
+        values = np.sort(fitted.data.values[np.isfinite(fitted.data.values)])
+        return values, (np.arange(values.size) + 0.5) / fitted.data.size
     return np.empty(0), np.empty(0)
 
 

@@ -34,12 +34,12 @@ Record = dict[str, Any]
 _MEDIAN_LINE: Line = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
 
 
-def band(found: Band, *, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
+def band(interval: Band, *, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw band, prediction and median along the path of displacement, and a test over them.
 
     Parameters
     ----------
-    found : Band
+    interval : Band
         The prediction with its band.
     test : optional
         A measured test with the same rows.
@@ -53,14 +53,16 @@ def band(found: Band, *, test: Any = None, ax: Axes | None = None, **line: Any) 
     matplotlib.axes.Axes
         The axes.
     """
-    path = factor("m") * np.concatenate(([0.0], np.cumsum(np.abs(np.diff(found.displacement)))))
-    measured = None if test is None else found.rows_of(test)
+    path = factor("m") * np.concatenate(([0.0], np.cumsum(np.abs(np.diff(interval.displacement)))))
+    measured = None if test is None else interval.rows_of(test)
     with axes_or_new(ax, (6.0, 2.8)) as drawn:
-        low, high = factor("N") * found.lower, factor("N") * found.upper
+        low, high = factor("N") * interval.lower, factor("N") * interval.upper
         drawn.fill_between(path, low, high, color="0.86", lw=0, label="80 % band")
         model = line_of(MODEL_LINE | {"label": "Prediction"}, line)
-        drawn.plot(path, factor("N") * found.force, **model)
-        drawn.plot(path, factor("N") * found.median, **_MEDIAN_LINE, label="Median of the samples")
+        drawn.plot(path, factor("N") * interval.force, **model)
+        drawn.plot(
+            path, factor("N") * interval.median, **_MEDIAN_LINE, label="Median of the samples"
+        )
         if measured is not None:
             drawn.plot(path, factor("N") * measured, **TEST_LINE, label="Test")
         drawn.set(xlabel=labelled("Path of displacement", "m"), ylabel=labelled("Force", "N"))

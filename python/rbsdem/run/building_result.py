@@ -198,16 +198,16 @@ class BuildingResult(Result):
                 # The last is none of the frame: a foot without a column.
                 padded = np.column_stack((channels[name], np.zeros(self.time.size)))
                 channels[name] = padded[:, at]
-        own = [i for i, member in enumerate(parts.members) if member.startswith(prefix)]
+        columns = [i for i, member in enumerate(parts.members) if member.startswith(prefix)]
         for name in _OF_MEMBERS:
             if name in channels:
-                channels[name] = channels[name][:, own]
+                channels[name] = channels[name][:, columns]
         for group, pair in CHANNELS.items():
             springs = parts.springs_of(group)
-            own = [i for i, one in enumerate(springs) if one.member.startswith(prefix)]
+            columns = [i for i, spring in enumerate(springs) if spring.member.startswith(prefix)]
             for name in pair:
-                if name in channels and own:
-                    channels[name] = channels[name][:, own]
+                if name in channels and columns:
+                    channels[name] = channels[name][:, columns]
                 else:
                     channels.pop(name, None)
         if "ground_acceleration" in channels:
@@ -217,13 +217,13 @@ class BuildingResult(Result):
                 cosine * channels["ground_acceleration"] + sine * across
             )
         summary = {k: v for k, v in self.summary.items() if k not in _OF_ONE_MEMBER}
-        found = FrameOfBuilding(channels, summary, frame, self.call, None, None)
-        vars(found).update(building_result=self, plane=plane)
+        result = FrameOfBuilding(channels, summary, frame, self.call, None, None)
+        vars(result).update(building_result=self, plane=plane)
         if not self.dynamic and self.path is not self:
-            vars(found)["_path"] = self.path.frame(plane.name)
+            vars(result)["_path"] = self.path.frame(plane.name)
         else:
-            vars(found)["_is_path"] = True
-        return found
+            vars(result)["_is_path"] = True
+        return result
 
     def may_have_lost(self, displacement: float = np.inf) -> list[str]:
         """Return the columns of all frames that may have lost their axial load, as theirs do."""
@@ -246,22 +246,22 @@ class BuildingResult(Result):
     @cached_property
     def both_planes(self) -> dict[str, float]:
         """Columns that are beyond yield in both planes at once, and the time of the first row."""
-        found: dict[str, float] = {}
+        first_beyond: dict[str, float] = {}
         path = self.path
         beyond = {name: _beyond_yield(result) for name, result in path.frames.items()}
         for second, first in self.building.axial_of.items():
-            (one, c1), (two, c2) = first.split(":"), second.split(":")
+            (first_plane, c1), (second_plane, c2) = first.split(":"), second.split(":")
             sides = (
-                [beyond[one].get((c1, end)) for end in (0.0, 1.0)],
-                [beyond[two].get((c2, end)) for end in (0.0, 1.0)],
+                [beyond[first_plane].get((c1, end)) for end in (0.0, 1.0)],
+                [beyond[second_plane].get((c2, end)) for end in (0.0, 1.0)],
             )
             for a, b in zip(*sides, strict=True):
                 both = np.zeros(1) if a is None or b is None else np.logical_and(a, b)
                 if not both.any():
                     continue
                 time = float(path.time[int(both.argmax())])
-                found[first] = min(time, found.get(first, np.inf))
-        return found
+                first_beyond[first] = min(time, first_beyond.get(first, np.inf))
+        return first_beyond
 
     def _owners(self, channel: str) -> Sequence[object]:
         if channel in _OF_FLOORS:
@@ -277,7 +277,7 @@ class BuildingResult(Result):
 
 def _beyond_yield(result: FrameResult) -> dict[tuple[str, float], Array]:
     """Return in which rows an end of a member is turned beyond its yield, by member and end."""
-    found: dict[tuple[str, float], Array] = {}
+    beyond: dict[tuple[str, float], Array] = {}
     for (spring, values, _), reached in zip(result._springs, result._reached, strict=True):
         if spring.group != "flexure" or spring.position not in (0.0, 1.0):
             continue
@@ -285,18 +285,18 @@ def _beyond_yield(result: FrameResult) -> dict[tuple[str, float], Array]:
         there = np.zeros(values.size, bool)
         for side, turned in marks:
             there |= side * values >= abs(turned) * (1.0 - 1e-9)
-        found[spring.member, spring.position] = there
-    return found
+        beyond[spring.member, spring.position] = there
+    return beyond
 
 
 def both_planes_note(result: BuildingResult) -> str:
     """Return a note on columns that yield in both planes at once; empty without."""
-    found = result.both_planes
-    if not found:
+    columns = result.both_planes
+    if not columns:
         return ""
-    name = min(found, key=lambda one: found[one])
-    more = f", and {len(found) - 1} more columns" if len(found) > 1 else ""
-    when = f"{found[name]:.4g} s" if result.dynamic else f"point {found[name]:.4g}"
+    name = min(columns, key=lambda column: columns[column])
+    more = f", and {len(columns) - 1} more columns" if len(columns) > 1 else ""
+    when = f"{columns[name]:.4g} s" if result.dynamic else f"point {columns[name]:.4g}"
     return (
         f"column {name}{more}: both of its planes are beyond yield at once, first at {when}; "
         "planar hinges do not know of each other, and on a diagonal they carry 1.2 to 1.7 times "

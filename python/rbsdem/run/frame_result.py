@@ -508,6 +508,7 @@ class FrameResult(Result):
         path = self._measured
         reached = path._found_events()
         times, own_times, kept = np.array([at for _, at, _ in reached]), path.time, self.time
+        # The row at or behind each, as not all rows may be kept.
         rows = np.searchsorted(kept, times - 1e-12 * np.abs(times))
         rows = np.minimum(rows, kept.size - 1)
         columns = (path.displacement, path.drift, path.loop_force)

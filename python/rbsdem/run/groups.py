@@ -50,14 +50,14 @@ _PARTS: dict[str, type] = {
 }  # fmt: skip
 
 
-def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
+def layered_column(drawing: LayeredModel, keywords: Mapping[str, Any]) -> Column:
     """Return the column of a case that has its drawing.
 
     Parameters
     ----------
     drawing : LayeredModel
         The drawing.
-    given : mapping
+    keywords : mapping
         The arguments of `rbsdem.Column` that the case gives, with its springs.
 
     Returns
@@ -71,7 +71,7 @@ def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
     AccuracyWarning
         Where they are not those that the model draws.
     """
-    made = LayeredColumn(**given, drawing=drawing)
+    made = LayeredColumn(**keywords, drawing=drawing)
     if made.drawing != drawing:
         warn(
             f"the springs of the case were drawn for axial_load = {drawing.axial_load:g} N, and "
@@ -79,7 +79,7 @@ def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
             "nothing is known of bars and concrete. To draw it again, make the column of its "
             "section",
         )
-        return Column(**given)
+        return Column(**keywords)
     other = made.replaced
     if other:
         warn(
@@ -105,12 +105,12 @@ def drawing_of(groups: Groups) -> LayeredModel:
         If a value is refused, or the program does not know the version.
     """
     drawing = _one(groups, "drawing")
-    changes = {one["name"]: one["value"] for one in groups.get("parameter", [])}
+    changes = {parameter["name"]: parameter["value"] for parameter in groups.get("parameter", [])}
     made = _parameters(drawing.pop("version"), changes)
     return LayeredModel(section=section_of(groups), parameters=made, **drawing)
 
 
-def drawn_column(groups: Groups, given: Mapping[str, Any]) -> Column:
+def drawn_column(groups: Groups, keywords: Mapping[str, Any]) -> Column:
     """Return the column of a case that has its section, and no springs but those of a footing.
 
     It has second-order effects, as `rbsdem.section.column` makes it.
@@ -119,7 +119,7 @@ def drawn_column(groups: Groups, given: Mapping[str, Any]) -> Column:
     ----------
     groups : mapping
         The groups of the case.
-    given : mapping
+    keywords : mapping
         The arguments of `rbsdem.Column` that the case gives.
 
     Raises
@@ -128,13 +128,13 @@ def drawn_column(groups: Groups, given: Mapping[str, Any]) -> Column:
         If a value is refused, or the section cannot carry the axial load.
     """
     for name in ("lengths", "model"):
-        if name in given:
+        if name in keywords:
             raise InputError(f"column: {name} is of columns with springs; remove it, or give them")
     about = _one(groups, "drawing")
     about.pop("name", None)
-    changes = {one["name"]: one["value"] for one in groups.get("parameter", [])}
+    changes = {parameter["name"]: parameter["value"] for parameter in groups.get("parameter", [])}
     about["model_parameters"] = _parameters(about.pop("version"), changes)
-    rest = {name: value for name, value in given.items() if value is not None}
+    rest = {name: value for name, value in keywords.items() if value is not None}
     about |= {name: rest.pop(name) for name in _OF_DRAWN if name in rest}
     if "n" in about and about.get("top") == "fixed":
         # Bodies of each half, which share the one in the middle
@@ -159,8 +159,8 @@ def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
 def section_of(groups: Groups) -> Section:
     """Return the section of the groups of one drawing."""
     steels: dict[int | None, Steel] = {}
-    for one in groups.get("steel", []):
-        values = _core.typed("steel", one)
+    for group in groups.get("steel", []):
+        values = _core.typed("steel", group)
         number = values.pop("id", None)
         steels.setdefault(number, Steel(**values))
     sizes = _one(groups, "section")
@@ -173,8 +173,8 @@ def section_of(groups: Groups) -> Section:
         bars = _one(groups, "bars")
         rows = zip(bars["y"], bars["area"], bars["steel"], strict=True)
         parts["bars"] = [(y, area, steels[int(number)]) for y, area, number in rows]
-    for given in groups.get("row", []):
-        values = _core.typed("row", given)
+    for group in groups.get("row", []):
+        values = _core.typed("row", group)
         face = values.pop("face", None)
         if "steel" in values:
             values["steel"] = steels[values["steel"]]
@@ -202,34 +202,34 @@ def _wall(groups: Groups, sizes: dict[str, Any], steels: Mapping[int | None, Ste
     rows = list(zip(bars["y"], bars["area"], bars["steel"], strict=True))
     ends: dict[str, Boundary] = {}
     for group in groups.get("boundary", []):
-        given = _core.typed("boundary", group)
-        side, hoops = given.get("side", "both"), None
-        if "hoop_diameter" in given:
-            legs = {name: given[name] for name in ("legs_along", "legs_across") if name in given}
+        values = _core.typed("boundary", group)
+        side, hoops = values.get("side", "both"), None
+        if "hoop_diameter" in values:
+            legs = {name: values[name] for name in ("legs_along", "legs_across") if name in values}
             hoops = Hoops(
-                given["hoop_diameter"], given["hoop_spacing"], steels[given["steel"]], **legs
+                values["hoop_diameter"], values["hoop_spacing"], steels[values["steel"]], **legs
             )
         sign = -1.0 if side == "start" else 1.0
-        own: Any = [
+        of_end: Any = [
             (round(half - sign * y, 9), a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0
         ]
-        laid = [one for one in groups.get("row", []) if one.get("face") == side]
-        if laid and own:
+        laid = [row for row in groups.get("row", []) if row.get("face") == side]
+        if laid and of_end:
             raise InputError("row: there are bars too; give one of them")
-        own = own or [
+        of_end = of_end or [
             Bars(
-                **_core.typed("row", {k: v for k, v in one.items() if k != "face"})
-                | {"steel": steels[one["steel"]] if "steel" in one else next(iter(steels.values()))}
+                **_core.typed("row", {k: v for k, v in row.items() if k != "face"})
+                | {"steel": steels[row["steel"]] if "steel" in row else next(iter(steels.values()))}
             )
-            for one in laid
+            for row in laid
         ]
-        thick = {name: given.get(name) for name in ("thickness", "bar_diameter")}
-        ends[side] = Boundary(given["length"], own, hoops, **thick)
+        thick = {name: values.get(name) for name in ("thickness", "bar_diameter")}
+        ends[side] = Boundary(values["length"], of_end, hoops, **thick)
     meshes: dict[str, Curtain | None] = dict.fromkeys(("vertical", "horizontal"))
     for group in groups.get("curtain", []):
-        given = _core.typed("curtain", group)
-        direction = given.pop("direction", "vertical")
-        meshes[direction] = Curtain(**given | {"steel": steels[given["steel"]]})
+        values = _core.typed("curtain", group)
+        direction = values.pop("direction", "vertical")
+        meshes[direction] = Curtain(**values | {"steel": steels[values["steel"]]})
     boundary = ends.get("both") or ((ends["start"], ends["end"]) if ends else None)
     cover = {"cover": sizes["cover"]} if "cover" in sizes else {}
     concrete = Concrete(**_one(groups, "concrete"))
@@ -244,21 +244,21 @@ def _one(groups: Groups, name: str) -> dict[str, Any]:
     return _core.typed(name, groups[name][0])
 
 
-def _spring(given: Mapping[str, Any], layers: Sequence[tuple[float, Spring]] = ()) -> Spring:
+def _spring(group: Mapping[str, Any], layers: Sequence[tuple[float, Spring]] = ()) -> Spring:
     """Return the spring that a group states."""
-    values = {name: value for name, value in given.items() if name not in _NO_KEYS}
-    return SPRINGS[given["rule"]](**({"layers": layers} if layers else values))
+    values = {name: value for name, value in group.items() if name not in _NO_KEYS}
+    return SPRINGS[group["rule"]](**({"layers": layers} if layers else values))
 
 
 def _layer_springs(groups: Groups) -> dict[int, Spring]:
     """Return the springs of layers by their numbers."""
-    return {int(one["id"]): _spring(one) for one in groups.get("layer_spring", [])}
+    return {int(group["id"]): _spring(group) for group in groups.get("layer_spring", [])}
 
 
-def _layers(given: Mapping[str, Any], springs: Mapping[int, Spring]) -> list[tuple[float, Spring]]:
+def _layers(group: Mapping[str, Any], springs: Mapping[int, Spring]) -> list[tuple[float, Spring]]:
     """Return the layers that a group states."""
-    numbers = (int(number) for number in _core.several(given["spring"]))
-    return list(zip(_core.several(given["y"]), (springs[i] for i in numbers), strict=True))
+    numbers = (int(number) for number in _core.several(group["spring"]))
+    return list(zip(_core.several(group["y"]), (springs[i] for i in numbers), strict=True))
 
 
 def springs_of_joints(groups: Groups, last: int) -> dict[str, Any]:
@@ -267,26 +267,26 @@ def springs_of_joints(groups: Groups, last: int) -> dict[str, Any]:
     Those of joint 0, beneath a footing, have its number in their names.
     """
     springs = _layer_springs(groups)
-    layers = {_joints(given): _layers(given, springs) for given in groups.get("layers", [])}
-    found: dict[str, Any] = {}
+    layers = {_joints(group): _layers(group, springs) for group in groups.get("layers", [])}
+    by_name: dict[str, Any] = {}
     for name in SPRING_GROUPS:
         places: dict[int | None, Spring] = {}
-        for given in groups.get(name, []):
-            joints = _joints(given)
-            spring = _spring(given, layers[joints] if given["rule"] == "layered" else ())
+        for group in groups.get(name, []):
+            joints = _joints(group)
+            spring = _spring(group, layers[joints] if group["rule"] == "layered" else ())
             places |= dict.fromkeys(joints or (None,), spring)
         if 0 in places:
-            found[f"{name}_0"] = places.pop(0)
+            by_name[f"{name}_0"] = places.pop(0)
         if None in places:
-            found[name] = places[None]
+            by_name[name] = places[None]
         elif places:
-            found[name] = [places[joint] for joint in range(1, last + 1)]
-    return found
+            by_name[name] = [places[joint] for joint in range(1, last + 1)]
+    return by_name
 
 
-def _joints(given: dict[str, Any]) -> tuple[int, ...]:
+def _joints(group: dict[str, Any]) -> tuple[int, ...]:
     """Return the joints that a group names; an empty tuple means all joints."""
-    return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
+    return tuple(int(joint) for joint in _core.several(group.get("joint", [])))
 
 
 def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
@@ -301,24 +301,24 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
     frame = _core.typed("frame", groups["frame"][-1])
     bays, storeys = len(frame.get("bays", ())), max(len(frame.get("storeys", ())), 1)
     damping = groups.get("damping")
-    panels = [own for own in groups.get("flexure", []) if "panel" in own]
+    panels = [group for group in groups.get("flexure", []) if "panel" in group]
     drawn = {name: frame.pop(name) for name in _DRAWN if name in frame}
     made = frame | {
         "nodes": _nodes(groups, bays + 1),
-        "members": [_member(given, kinds[given["kind"]]) for given in groups.get("member", [])],
+        "members": [_member(group, kinds[group["kind"]]) for group in groups.get("member", [])],
         "damping": Damping(**_core.typed("damping", damping[-1])) if damping else None,
-        "panel": next((_spring(own) for own in panels if own["panel"] == "all"), None),
-        "losses": {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
+        "panel": next((_spring(group) for group in panels if group["panel"] == "all"), None),
+        "losses": _losses(groups) or None,
     }
     columns: Any = _cells("column_of", "line", bays + 1, groups, kinds) or None
     beams = _cells("beam_of", "bay", bays, groups, kinds) or None
-    infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
+    infills = {group["name"]: _infill(group) for group in groups.get("infill", [])}
     infilled = _cells("infill_of", "bay", bays, groups, infills)
     dead, live, mass = (_by_floor(name, storeys, groups) for name in _OF_FLOORS)
     weights = {
-        place: given["load"]
-        for given in groups.get("node_load", [])
-        for place in places_of(_pair(given, "line", "floor"), "node_load", bays + 1)
+        place: group["load"]
+        for group in groups.get("node_load", [])
+        for place in places_of(_pair(group, "line", "floor"), "node_load", bays + 1)
     }
     cells = [*(columns or {}).values(), *(beams or {}).values()]
     if not (any(map(is_drawn, cells)) or drawn or weights or infilled or any(live)):
@@ -343,7 +343,7 @@ def building_in_plan(groups: Groups, drawings: Sequence[Groups] = ()) -> Buildin
         If a place or a kind is not of the grid, or the members cannot be made.
     """
     kinds = _kinds(groups, drawings)
-    infills = {given["name"]: _infill(given) for given in groups.get("infill", [])}
+    infills = {group["name"]: _infill(group) for group in groups.get("infill", [])}
     frame = _core.typed("frame", groups["frame"][-1])
     for name in ("storeys", "bays_y"):
         if name not in frame:
@@ -373,18 +373,18 @@ def _cells_in_plan(
     made |= {f"{name}_{along}": {} for name in ("beams", "infills") for along in "xy"}
     for group, name in (("column_of", "columns"), ("beam_of", "beams"), ("infill_of", "infills")):
         known = infills if name == "infills" else kinds
-        for given in groups.get(group, []):
-            words = {given["kind"], given.get("kind_to", "none")} - {"none"}
+        for values in groups.get(group, []):
+            words = {values["kind"], values.get("kind_to", "none")} - {"none"}
             if unknown := sorted(words - known.keys()):
                 raise InputError(f"{group}: kind = {unknown[0]!r} is not known; give its group")
-            if planar := sorted({"line", "lines", "bays"} & given.keys()):
+            if planar := sorted({"line", "lines", "bays"} & values.keys()):
                 raise InputError(
                     f"{group}: {planar[0]} is of a planar frame; a grid in plan has line_x and "
                     "line_y, or along, bay and of_line"
                 )
-            cell, along, k = _cell(given, known), given.get("along"), int(given.get("storey", 0))
+            cell, along, k = _cell(values, known), values.get("along"), int(values.get("storey", 0))
             pair = ("line_x", "line_y") if name == "columns" else ("bay", "of_line")
-            i, j = (int(given.get(key, 0)) for key in pair)
+            i, j = (int(values.get(key, 0)) for key in pair)
             if name == "columns" and along is None:
                 made[name][i, j, k] = cell
             elif name == "columns":
@@ -402,32 +402,32 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
     kinds = _kinds(groups, drawings)
     frame = _core.typed("frame", groups["frame"][-1])
     damping = groups.get("damping")
-    losses = {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])}
-    nodes = {given["name"]: given for given in groups.get("node", [])}
-    in_plane = {name: given["plane"] for name, given in nodes.items()}
+    losses = _losses(groups)
+    nodes = {group["name"]: group for group in groups.get("node", [])}
+    in_plane = {name: group["plane"] for name, group in nodes.items()}
     of_building = ("plane", "rises_with")
-    plain = [{k: v for k, v in one.items() if k not in of_building} for one in nodes.values()]
+    plain = [{k: v for k, v in node.items() if k not in of_building} for node in nodes.values()]
     leaders: dict[tuple[str, int], str] = {}
-    own: dict[str, list[FrameNode]] = {}
+    nodes_of: dict[str, list[FrameNode]] = {}
     for node in _nodes({**groups, "node": plain}, 0):
         plane = in_plane[node.name]
         name = node.name.removeprefix(f"{plane}:")
         # Alone, too, its floors are rigid.
         first = leaders.setdefault((plane, node.floor or 0), name)
         tied = first if node.floor and first != name else ""
-        own.setdefault(plane, []).append(replace(node, name=name, moves_with=tied))
+        nodes_of.setdefault(plane, []).append(replace(node, name=name, moves_with=tied))
     members: dict[str, list[Member]] = {}
-    for given in groups.get("member", []):
-        plane = in_plane[given["from"]]
-        cut = {key: given[key].removeprefix(f"{plane}:") for key in ("name", "from", "to")}
-        members.setdefault(plane, []).append(_member(given | cut, kinds[given["kind"]]))
-    planes = [_core.typed("plane", given) for given in groups["plane"]]
-    count = max(node.floor or 0 for one in own.values() for node in one)
+    for group in groups.get("member", []):
+        plane = in_plane[group["from"]]
+        cut = {key: group[key].removeprefix(f"{plane}:") for key in ("name", "from", "to")}
+        members.setdefault(plane, []).append(_member(group | cut, kinds[group["kind"]]))
+    planes = [_core.typed("plane", group) for group in groups["plane"]]
+    count = max(node.floor or 0 for of_plane in nodes_of.values() for node in of_plane)
     floors: list[dict[str, float]] = [{} for _ in range(count)]
-    for given in groups.get("floor", []):
+    for group in groups.get("floor", []):
         for i, floor in enumerate(floors):
-            if given.get("floor", 0) in (0, i + 1):
-                floor.update(given)
+            if group.get("floor", 0) in (0, i + 1):
+                floor.update(group)
     values = {
         name: [floor.get(name, 0.0) for floor in floors]
         for name in ("mass", "inertia", "centre_x", "centre_y")
@@ -438,7 +438,7 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
             start = f"{plane['name']}:"
             lost = {k.removeprefix(start): v for k, v in losses.items() if k.startswith(start)}
             made = FrameInPlan(
-                nodes=own[plane["name"]], members=members[plane["name"]], losses=lost or None
+                nodes=nodes_of[plane["name"]], members=members[plane["name"]], losses=lost or None
             )
             more = (plane["along"],) if "along" in plane else ()
             frames.append((made, plane.get("angle", 0.0), plane.get("arm", 0.0), *more))
@@ -451,16 +451,16 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
         damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
         **frame,
     )
-    rises = {name: given.get("rises_with", "") for name, given in nodes.items()}
-    axial = {own["name"]: own.get("axial_of", "") for own in groups.get("member", [])}
-    for key, given, found in (
+    rises = {name: group.get("rises_with", "") for name, group in nodes.items()}
+    axial = {group["name"]: group.get("axial_of", "") for group in groups.get("member", [])}
+    for key, stated, by_place in (
         ("rises_with", rises, building.rises), ("axial_of", axial, building.axial_of)
     ):  # fmt: skip
-        for name, other in given.items():
-            if other != found.get(name, ""):
+        for name, other in stated.items():
+            if other != by_place.get(name, ""):
                 raise InputError(
                     f"{key} of {name!r} is {other!r}, and by the places of the planes it is "
-                    f"{found.get(name, '')!r}; correct arm and along of each &plane"
+                    f"{by_place.get(name, '')!r}; correct arm and along of each &plane"
                 )
     return building
 
@@ -481,132 +481,138 @@ def _drawn_section(groups: Groups) -> Section:
         raise error.of(f"drawing {about['name']!r}") from None
 
 
-def _infill(given: dict[str, Any]) -> Infill:
-    values = _core.typed("infill", given)
+def _losses(groups: Groups) -> dict[str, float]:
+    return {group["member"]: group.get("time", 0.0) for group in groups.get("loss", [])}
+
+
+def _infill(group: dict[str, Any]) -> Infill:
+    values = _core.typed("infill", group)
     opening = values.pop("opening_length", 0.0), values.pop("opening_height", 0.0)
     return Infill(**values, opening=opening if any(opening) else None)
 
 
-def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
-    rigid_end = given.get("rigid_from", 0.0), given.get("rigid_to", 0.0)
+def _member(group: Mapping[str, Any], kind: FrameMember) -> Member:
+    rigid_end = group.get("rigid_from", 0.0), group.get("rigid_to", 0.0)
     return Member(
-        given["name"], given["from"], given["to"], kind, rigid_end, given.get("load", 0.0)
+        group["name"], group["from"], group["to"], kind, rigid_end, group.get("load", 0.0)
     )
 
 
 def _kinds(groups: Groups, drawings: Sequence[Groups]) -> dict[str, Any]:
     """Return kinds of members, and sections of drawings, by their names."""
-    kinds: dict[str, Any] = {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
-    for given in groups.get("member_kind", []):
-        kinds[given["name"]] = _kind(given, groups, kinds)
+    kinds: dict[str, Any] = {
+        drawing["drawing"][0]["name"]: _drawn_section(drawing) for drawing in drawings
+    }
+    for group in groups.get("member_kind", []):
+        kinds[group["name"]] = _kind(group, groups, kinds)
     return kinds
 
 
-def _kind(given: dict[str, Any], groups: Groups, sections: Mapping[str, Section]) -> FrameMember:
+def _kind(stated: dict[str, Any], groups: Groups, sections: Mapping[str, Section]) -> FrameMember:
     """Return a kind of members with its springs, and the sections that they were made of."""
-    found: dict[str, Any] = {}
+    springs: dict[str, Any] = {}
     for group, usual in (("flexure", [0.0, 1.0]), ("shear", [0.5])):
         for spring in groups.get(group, []):
-            if spring.get("kind") == given["name"]:
+            if spring.get("kind") == stated["name"]:
                 places = _core.several(spring.get("position", usual))
                 made = _layered(spring, groups) if spring["rule"] == "layered" else _spring(spring)
-                found.setdefault(group, {}).update(dict.fromkeys(places, made))
+                springs.setdefault(group, {}).update(dict.fromkeys(places, made))
     for spring in groups.get("axial_spring", []):
-        if spring.get("kind") == given["name"]:
-            found["axial_spring"] = _spring(spring)
+        if spring.get("kind") == stated["name"]:
+            springs["axial_spring"] = _spring(spring)
     # A rigid kind has none of them.
-    own: dict[str, Any] = dict.fromkeys(("modulus", "area", "inertia"), 1.0)
-    own |= _core.typed("member_kind", given) | found
+    values: dict[str, Any] = dict.fromkeys(("modulus", "area", "inertia"), 1.0)
+    values |= _core.typed("member_kind", stated) | springs
     keys = ("section", "section_to", "core_layers", "concrete_length", "bar_length")
-    first, last, core, *lengths = (own.pop(key, None) for key in keys)
+    first, last, core, *lengths = (values.pop(key, None) for key in keys)
     if first is not None:
-        own["sections"] = sections[first], sections[last or first]
-    if "shear_spans" in own:
-        spans = own["shear_spans"]
-        own["shear_spans"] = tuple(spans[:2]), tuple(spans[2:])
+        values["sections"] = sections[first], sections[last or first]
+    if "shear_spans" in values:
+        spans = values["shear_spans"]
+        values["shear_spans"] = tuple(spans[:2]), tuple(spans[2:])
     if lengths != [None, None]:
-        foot = found.get("flexure", {}).get(0.0)
+        foot = springs.get("flexure", {}).get(0.0)
         layers = len(foot.layers) if isinstance(foot, Layered) else 0
-        numbers = {"core": core or 0, "cover": 0, "bar": len(own["sections"][0].bars)}
+        numbers = {"core": core or 0, "cover": 0, "bar": len(values["sections"][0].bars)}
         numbers["cover"] = layers - sum(numbers.values())
         if None in lengths or numbers["cover"] < 0:
             raise InputError(
-                f"member_kind {given['name']!r}: concrete_length, bar_length and core_layers are "
+                f"member_kind {stated['name']!r}: concrete_length, bar_length and core_layers are "
                 "of a joint of layers at its start, with the bars of its section; give both "
                 "lengths and that joint, or none of them"
             )
         parts: Any = [part for part, number in numbers.items() for _ in range(number)]
-        own["gauge"] = Gauge(tuple(parts), tuple(lengths[part == "bar"] for part in parts))
-    return FrameMember(**own)
+        values["gauge"] = Gauge(tuple(parts), tuple(lengths[part == "bar"] for part in parts))
+    return FrameMember(**values)
 
 
-def _layered(given: dict[str, Any], groups: Groups) -> Layered:
+def _layered(spring: dict[str, Any], groups: Groups) -> Layered:
     """Return a joint of layers, whose kind and places are those of its spring."""
 
     def where(group: dict[str, Any]) -> tuple[Any, ...]:
         return group.get("kind"), *_core.several(group.get("position", []))
 
-    layers = next(one for one in groups["layers"] if where(one) == where(given))
+    layers = next(group for group in groups["layers"] if where(group) == where(spring))
     return Layered(_layers(layers, _layer_springs(groups)))
 
 
-def _pair(given: Mapping[str, Any], line: str, storey: str) -> tuple[Any, int]:
+def _pair(group: Mapping[str, Any], line: str, storey: str) -> tuple[Any, int]:
     """Return the place that a group of a grid names, as `Frame.grid` takes it."""
-    word = given.get(f"{line}s", "all")
-    return int(given.get(line, 0)) if word == "all" else word, int(given.get(storey, 0))
+    word = group.get(f"{line}s", "all")
+    return int(group.get(line, 0)) if word == "all" else word, int(group.get(storey, 0))
 
 
 def _cells(
     group: str, key: str, lines: int, groups: Groups, kinds: Mapping[str, Any]
 ) -> dict[tuple[int, int], Any]:
     """Return kinds, or sections of drawings, by their places."""
-    found: dict[tuple[int, int], Any] = {}
-    for given in groups.get(group, []):
-        cell = _cell(given, kinds)
-        for place in places_of(_pair(given, key, "storey"), group, lines):
+    cells: dict[tuple[int, int], Any] = {}
+    for values in groups.get(group, []):
+        cell = _cell(values, kinds)
+        for place in places_of(_pair(values, key, "storey"), group, lines):
             # The last that fits counts.
-            found.pop(place, None)
-            found[place] = cell
-    return found
+            cells.pop(place, None)
+            cells[place] = cell
+    return cells
 
 
-def _cell(given: Mapping[str, Any], kinds: Mapping[str, Any]) -> Any:
+def _cell(group: Mapping[str, Any], kinds: Mapping[str, Any]) -> Any:
     """Return what stands in a place: a kind, the sections of drawings, an infill, or None."""
-    cell = None if given["kind"] == "none" else kinds[given["kind"]]
+    cell = None if group["kind"] == "none" else kinds[group["kind"]]
     if isinstance(cell, Section):
-        other = given.get("kind_to")
+        other = group.get("kind_to")
         return cell if other is None else (cell, kinds[other])
     if isinstance(cell, FrameMember):
-        rigid_end = given.get("rigid_end", 0.0)
-        if "rigid_from" in given or "rigid_to" in given:
-            rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
+        rigid_end = group.get("rigid_end", 0.0)
+        if "rigid_from" in group or "rigid_to" in group:
+            rigid_end = group.get("rigid_from", rigid_end), group.get("rigid_to", rigid_end)
         return with_rigid_end(cell, rigid_end)
     return cell
 
 
 def _by_floor(name: str, storeys: int, groups: Groups) -> list[Any]:
     values: list[Any] = [0.0] * storeys
-    for given in groups.get("floor", []):
-        if not 0 <= (floor := int(given.get("floor", 0))) <= storeys:
+    for group in groups.get("floor", []):
+        if not 0 <= (floor := int(group.get("floor", 0))) <= storeys:
             raise InputError(
                 f"floor: floor = {floor}, but there are {storeys}; correct it, or give 0 for all"
             )
         for i in range(storeys):
             if floor in (0, i + 1):
-                several = tuple(_core.several(given.get(name, 0.0)))
+                several = tuple(_core.several(group.get(name, 0.0)))
                 values[i] = several if len(several) > 1 else several[0]
     return values[:1] if len(set(values)) == 1 else values
 
 
 def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
     """Return the nodes with the springs that hold them to the ground."""
-    nodes = {own["name"]: _core.typed("node", own) for own in groups.get("node", [])}
+    nodes = {node["name"]: _core.typed("node", node) for node in groups.get("node", [])}
     for group in SPRING_GROUPS:
         for spring in groups.get(group, []):
             name = spring.get("node", "")
             base = [f"N-{line}-0" for line in range(1, lines + 1)]
-            for one in base if name == "base" else [name] if name else []:
-                nodes.setdefault(one, {"name": one})[group] = _spring(spring)
+            for node_name in base if name == "base" else [name] if name else []:
+                nodes.setdefault(node_name, {"name": node_name})[group] = _spring(spring)
     for spring in groups.get("flexure", []):
         name = spring.get("panel", "all")
         if name != "all":

@@ -128,8 +128,8 @@ def cyclic(
         If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", or the top goes
         beyond half of the height.
     """
-    given = {"displacement": displacement, "force": force}
-    driven = [(name, values) for name, values in given.items() if values is not None]
+    loads = {"displacement": displacement, "force": force}
+    driven = [(name, values) for name, values in loads.items() if values is not None]
     if len(driven) != 1:
         raise InputError("cyclic: give exactly one of displacement and force")
     name, values = driven[0][0], _arguments.vector(driven[0][1], driven[0][0])
@@ -249,7 +249,7 @@ def time_history(
     LongRunWarning
         Before a run starts that is expected to take more than 5 s; it names the faster method.
     """
-    given = {
+    drives = {
         "force": force,
         "ground_acceleration": ground_acceleration,
         "vertical_acceleration": vertical_acceleration,
@@ -262,20 +262,20 @@ def time_history(
                 "time_history: a pair of GroundMotion stands in the place of time, and "
                 "ground_acceleration is given too; give one of them"
             )
-        given |= {"ground_acceleration": time[0], "ground_acceleration_y": time[1]}
+        drives |= {"ground_acceleration": time[0], "ground_acceleration_y": time[1]}
         time = None
-    if isinstance(time, (list, tuple)) and any(isinstance(one, GroundMotion) for one in time):
+    if isinstance(time, (list, tuple)) and any(isinstance(motion, GroundMotion) for motion in time):
         raise InputError(
             f"time_history: {len(time)} motions at once; give one, or a tuple of two along x and y"
         )
-    time, arrays = acting(time, given, "time_history")
+    time, arrays = acting(time, drives, "time_history")
     loads = {name: _arguments.vector(values, name) for name, values in arrays.items()}
     for name, values in loads.items():
         if values.size == 0:
             raise InputError(f"{name} is empty; give one value for each time")
     if not loads and not initial:
         raise InputError(
-            "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
+            f"time_history: nothing acts; give a load ({', '.join(drives)}) or an initial state"
         )
     if time is None:
         raise InputError("time_history: time is missing; give the times of the loading")
@@ -307,11 +307,11 @@ def _return(
     summary["kinematics"] = column.kinematics
     if "lost_joint" in summary and isinstance(column, Column):
         summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
-    given = {name: value for name, value in call.items() if value is not None}
+    settings = {name: value for name, value in call.items() if value is not None}
     kind: Any = FrameResult if isinstance(column, Frame) else ColumnResult
     kind = BuildingResult if isinstance(column, Building) else kind
     result: ColumnResult | FrameResult | BuildingResult = kind(
-        arrays, summary, column, given, state, reached
+        arrays, summary, column, settings, state, reached
     )
     if error is not None:
         error.result = result
@@ -369,12 +369,12 @@ def pushover(
         reason. `cyclic`, whose path is prescribed, raises `SolveError` there. Where second-order
         moments have used up the strength, the path has ended: beyond, the structure falls.
     """
-    given = {"drift": drift, "displacement": displacement, "force": force}
-    said = [name for name, value in given.items() if value is not None]
+    ends = {"drift": drift, "displacement": displacement, "force": force}
+    said = [name for name, value in ends.items() if value is not None]
     if len(said) != 1:
         raise InputError("pushover: give exactly one of drift, displacement and force")
     structure = _pushed(structure, pattern, direction)
-    far = _arguments.number(given[said[0]], f"pushover: {said[0]}", hint=" that is not 0")
+    far = _arguments.number(ends[said[0]], f"pushover: {said[0]}", hint=" that is not 0")
     if far == 0:
         raise InputError(f"pushover: {said[0]} = 0 must be a finite number that is not 0")
     if said[0] == "drift":

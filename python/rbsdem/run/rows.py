@@ -47,19 +47,19 @@ def parts_of(structure: Structure, method: str) -> set[str]:
     method : str
         The method that solved it.
     """
-    found = {"all", f"method:{method}"}
-    for _, given in _core.groups(structure._groups()):
-        if "rule" in given:
-            found.add(f"rule:{given['rule']}")
+    parts = {"all", f"method:{method}"}
+    for _, values in _core.groups(structure._groups()):
+        if "rule" in values:
+            parts.add(f"rule:{values['rule']}")
     if isinstance(structure, Frame):
-        found |= {f"rule:{spring.rule}" for spring in structure.parts.springs}
+        parts |= {f"rule:{spring.rule}" for spring in structure.parts.springs}
         for name in ("shear_drift", "failure_drift"):
             if any(getattr(kind, name) is not None for kind in structure.kinds.values()):
-                found.add(name)
+                parts.add(name)
         drawn = any(kind.sections is not None for kind in structure.kinds.values())
     else:
         drawn = getattr(structure, "drawing", None) is not None
-    return found | ({"drawn"} if drawn else set())
+    return parts | ({"drawn"} if drawn else set())
 
 
 def bibtex(parts: Iterable[str]) -> str:
@@ -218,15 +218,15 @@ class Result(_Channels):
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of the table, the unit of each in its name."""
-        found = {}
+        columns = {}
         for name, values in self.channels.items():
             unit = f"_{_core.units()[name]}".replace(" ", "").rstrip("_")
             if values.ndim == 1:
-                found[name + unit] = values
+                columns[name + unit] = values
             else:
-                for owner, one in zip(self._owners(name), values.T, strict=True):
-                    found[f"{name}_{owner}{unit}"] = one
-        return found
+                for owner, column in zip(self._owners(name), values.T, strict=True):
+                    columns[f"{name}_{owner}{unit}"] = column
+        return columns
 
     def _owners(self, channel: str) -> Sequence[object]:
         """Return the numbers or names of what a channel has columns for."""
@@ -539,15 +539,15 @@ class Result(_Channels):
     __hash__ = None  # type: ignore[assignment]
 
 
-def same(one: Any, other: Any) -> bool:
+def same(first: Any, second: Any) -> bool:
     """Return whether two values are equal; arrays by all elements, with NaN equal to NaN."""
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.array_equal(one, other, equal_nan=True)
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
-    if isinstance(one, float) and isinstance(other, float):
-        return one == other or (math.isnan(one) and math.isnan(other))
-    return bool(one == other)
+    if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
+        return np.array_equal(first, second, equal_nan=True)
+    if isinstance(first, dict) and isinstance(second, dict):
+        return first.keys() == second.keys() and all(same(first[key], second[key]) for key in first)
+    if isinstance(first, float) and isinstance(second, float):
+        return first == second or (math.isnan(first) and math.isnan(second))
+    return bool(first == second)
 
 
 def _text(number: float) -> str:

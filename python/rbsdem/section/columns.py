@@ -300,7 +300,7 @@ def member(
     halves = tuple(section) if isinstance(section, (tuple, list)) else (section, section)
     if len(halves) != 2:
         raise InputError(f"member: {len(halves)} sections; give one, or one for each half")
-    if any(isinstance(one, WallSection) for one in halves):
+    if any(isinstance(half, WallSection) for half in halves):
         raise InputError(
             "member: a wall in a frame has springs of its own M/V; use rbsdem.section.wall_members"
         )
@@ -329,8 +329,8 @@ def member(
         for (half, own), shear in zip(sides, shears, strict=True)
         if axial_load > 0
     ]
-    drift = min((one for one, _, _ in failures), default=None)
-    failure_load = min((one for _, one, _ in failures), default=None)
+    drift = min((drift for drift, _, _ in failures), default=None)
+    failure_load = min((load for _, load, _ in failures), default=None)
     modulus, area, depth = (
         0.5 * (one + other) for one, other in zip(*map(_elastic, halves), strict=True)
     )
@@ -339,12 +339,12 @@ def member(
         # Between two cracked joints the rest is cracked too. It turns by its mean moment under the
         # load, so that nothing is made up for lumping.
         above, below = (
-            unchecked(Elastic, k=one.k_y / lumping(2)) if isinstance(one, Takeda) else one
-            for one in (above, below)
+            unchecked(Elastic, k=spring.k_y / lumping(2)) if isinstance(spring, Takeda) else spring
+            for spring in (above, below)
         )
         dry = values.with_values(slip_length=0.0)
         # Bars that are more over one support end before the middle.
-        least = min(halves, key=lambda one: one.steel_area)
+        least = min(halves, key=lambda half: half.steel_area)
         middle = LayeredModel(least, 0.5 * length, axial_load, 2, dry, restrained)
         joints[0.5] = middle.joint.spring
     # The hinges shorten by their layers, the rest by this.
@@ -382,7 +382,7 @@ def _spans(
     if halves[0] == halves[1] and halves[0].symmetric and not load > 0.0:
         return half, half
     try:
-        start, end = (plastic_moments(one, axial_load) for one in halves)
+        start, end = (plastic_moments(half, axial_load) for half in halves)
     except InputError:
         return half, half
     return beam_spans(start, end, length, load)

@@ -118,31 +118,31 @@ def criteria(column: Structure, names: Collection[str] = tuple(WATCHED)) -> Sequ
 
 
 def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
-    found: list[Criterion] = []
+    listed: list[Criterion] = []
     if isinstance(column, Frame):
         for group, states, what in (("flexure", _TURNS, "rotation"), ("shear", _SLIPS, "slip")):
             springs = column.parts.springs_of(group)
-            single = [own for own in springs if own.rule != "layered"]
+            single = [part for part in springs if part.rule != "layered"]
             if group == "flexure":
-                found += _of_joints(column, springs, len(single))
-            for number, own in enumerate(single, 1):
-                where = f"the {group} spring of {own.member} at {own.position:g} of its length"
-                if own.group == "panel":
-                    where = f"the panel of node {own.member}"
-                marks = column.landmarks[own]
-                found += _of_landmarks(number, marks, where, states, what)
-        return [criterion for criterion in found if criterion.name in names]
+                listed += _of_joints(column, springs, len(single))
+            for number, part in enumerate(single, 1):
+                where = f"the {group} spring of {part.member} at {part.position:g} of its length"
+                if part.group == "panel":
+                    where = f"the panel of node {part.member}"
+                marks = column.landmarks[part]
+                listed += _of_landmarks(number, marks, where, states, what)
+        return [criterion for criterion in listed if criterion.name in names]
     for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
         if joint == 0:  # A footing is not the column.
             continue
         if isinstance(spring, Layered):
-            found += _of_layers(column, joint, spring, names)
+            listed += _of_layers(column, joint, spring, names)
         else:
-            found += _of_spring(joint, spring, _TURNS, "rotation")
+            listed += _of_spring(joint, spring, _TURNS, "rotation")
     for joint, spring in zip(column.joint_numbers, column.joints("shear"), strict=True):
         if joint > 0:
-            found += _of_spring(joint, spring, _SLIPS, "slip")
-    return [criterion for criterion in found if criterion.name in names]
+            listed += _of_spring(joint, spring, _SLIPS, "slip")
+    return [criterion for criterion in listed if criterion.name in names]
 
 
 def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
@@ -151,12 +151,12 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
     Sections stay plane: of equal layers the outermost ones are stretched most, and where no layer
     is (the slip is that of the next one) two of them give the strain.
     """
-    for own in springs:
-        made = frame.joints.get(own)
+    for part in springs:
+        made = frame.joints.get(part)
         if made is None:
             continue
         alike: dict[tuple[str, float, bool], list[Criterion]] = {}
-        for each in joint_criteria(frame.kinds[own.member], own.position, made):
+        for each in joint_criteria(frame.kinds[part.member], part.position, made):
             key = each.name, each.threshold / abs(each.opening), each.opening > 0.0
             alike.setdefault(key, []).append(each)
         places = np.array([y for y, _ in made.layers])
@@ -172,7 +172,7 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
                 yield replace(
                     each,
                     joint=number + at + 1,
-                    source=f"{each.source} of {own.member}",
+                    source=f"{each.source} of {part.member}",
                     slip=each.opening * share,
                     rotation=each.opening * (1.0 - share),
                     opening=0.0,
@@ -228,10 +228,10 @@ def all_thresholds(column: Structure, openings: bool) -> Array:
 
     Each counts for itself. A run without openings is told of the others, but cannot reach them.
     """
-    found = criteria(column)
-    numbers = thresholds(column, found, range(1, len(found) + 1))
+    listed = criteria(column)
+    numbers = thresholds(column, listed, range(1, len(listed) + 1))
     if not openings:
-        numbers[[bool(each.opening) for each in found], 5] = np.finfo(np.float64).max
+        numbers[[bool(each.opening) for each in listed], 5] = np.finfo(np.float64).max
         numbers[:, 4] = 0.0
     return numbers
 

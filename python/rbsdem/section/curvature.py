@@ -181,7 +181,7 @@ def range_warnings(section: Section, height: float, axial_load: float) -> tuple[
     """
     if section.shape == "wall":
         return _wall_warnings(section, height, axial_load)
-    found = {
+    properties = {
         "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
         "concrete strength": section.concrete.fc,
         "yield stress of the bars": max(steel.fy for _, _, steel in section.bars),
@@ -195,14 +195,14 @@ def range_warnings(section: Section, height: float, axial_load: float) -> tuple[
     else:
         ties = section.ties
         ratio = ties.legs * math.pi / 4 * ties.diameter**2 / (section.web_width * ties.spacing)
-        found["yield stress of the ties times their ratio"] = ratio * ties.steel.fy
+        properties["yield stress of the ties times their ratio"] = ratio * ties.steel.fy
         if section.bar_diameter:
-            found["tie spacing over bar diameter"] = ties.spacing / section.bar_diameter
+            properties["tie spacing over bar diameter"] = ties.spacing / section.bar_diameter
     if section.shape == "tee":
         remarks.append("the section has a flange; those of the tests had none")
     if section.hollow:
         remarks.append("the section is hollow; those of the tests were solid")
-    return (*remarks, *_outside(found, RANGE, "the tests that the model was fitted to"))
+    return (*remarks, *_outside(properties, RANGE, "the tests that the model was fitted to"))
 
 
 def _outside(
@@ -632,8 +632,8 @@ def _moments(
     section: Section, axial_load: float, curvature: ArrayLike, tension: Tension, confined: bool
 ) -> tuple[Array, Array]:
     """Return moments and strains at mid-depth, each curvature reached from zero."""
-    given = _arguments.finite_vector(curvature, "curvature", shape="any")
-    shape, flat = given.shape, given.ravel()
+    wanted = _arguments.finite_vector(curvature, "curvature", shape="any")
+    shape, flat = wanted.shape, wanted.ravel()
     over = np.flatnonzero(np.abs(flat) * section.depth > 1.0)
     if over.size:
         raise InputError(
@@ -642,14 +642,14 @@ def _moments(
         )
     settings = {"axial_load": axial_load, "tension": tension, "confined": confined}
     asked = section._statement + _core.group("diagram", settings)
-    found = np.empty((2, flat.size))
+    points = np.empty((2, flat.size))
     for side in (flat >= 0.0, flat < 0.0):
         places = np.flatnonzero(side)
         if places.size:
             places = places[np.argsort(np.abs(flat[places]), kind="stable")]
             answer = _core.evaluate("moment_curvature", asked, curvature=flat[places])
-            found[:, places] = answer.rows
-    return found[0].reshape(shape)[()], found[1].reshape(shape)[()]
+            points[:, places] = answer.rows
+    return points[0].reshape(shape)[()], points[1].reshape(shape)[()]
 
 
 def diagram(
@@ -763,13 +763,13 @@ def _events(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, 
     core = section.confinement
     hoops = settings["confined"] and core is not None and core.eps_cu < 1.0
     rules = ["steel", "mander"] if hoops else ["steel"]
-    found = [_find(section, settings | {"ultimate": rule}) for rule in rules]
+    answers = [_find(section, settings | {"ultimate": rule}) for rule in rules]
 
     def place(answer: tuple[Events, Point, bool]) -> float:
         point = answer[0].ultimate
         return math.inf if point is None else point.curvature
 
-    return min(found, key=place)
+    return min(answers, key=place)
 
 
 def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bool]:
@@ -783,5 +783,5 @@ def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bo
 
 def _named(events: Events) -> dict[str, Point]:
     """Return the points that were found by their names."""
-    found = {field.name: getattr(events, field.name) for field in fields(Events)}
-    return {name: point for name, point in found.items() if point is not None}
+    points = {field.name: getattr(events, field.name) for field in fields(Events)}
+    return {name: point for name, point in points.items() if point is not None}

@@ -161,15 +161,15 @@ class Frame:
         _arguments.convert(self, "frame")
         for name in ("storeys", "bays"):
             if getattr(self, name) is not None:
-                given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
-                _arguments.put(self, **{name: tuple(given.tolist())})
+                lengths = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
+                _arguments.put(self, **{name: tuple(lengths.tolist())})
         storeys, bays = len(self.storeys or ()), len(self.bays or ())  # type: ignore[arg-type]
         for name in ("floor_mass", "beam_load"):
-            given = loads_of_beams(
+            of_beams = loads_of_beams(
                 getattr(self, name), name, storeys, bays if name == "beam_load" else 1
             )
             # Floors that are alike are stated once, as a case file has them.
-            _arguments.put(self, **{name: loads_by_floor(given)})
+            _arguments.put(self, **{name: loads_by_floor(of_beams)})
         for name in ("columns", "beams"):
             lines = len(self.bays or ()) + (name == "columns")  # type: ignore[arg-type]
             cells = cells_of(getattr(self, name), name, FrameMember, lines)
@@ -314,24 +314,24 @@ class Frame:
     @cached_property
     def places(self) -> dict[str, Place]:
         """Where the members of the grid stand, by their names."""
-        own = {member.name for member in self.members}
+        free = {member.name for member in self.members}
         lines = range(1, len(self.bays or ()) + 2)  # type: ignore[arg-type]
         levels = range(1, len(self.storeys or ()) + 1)  # type: ignore[arg-type]
         grid = [Place("column", i, k) for k in levels for i in lines]
         grid += [Place("beam", i, k) for k in levels for i in lines[:-1]]
-        there = set(self.parts.members) - own
+        there = set(self.parts.members) - free
         return {place.name: place for place in grid if place.name in there}
 
     @cached_property
     def kinds(self) -> dict[str, FrameMember]:
         """Kinds of the members by their names, in the order of the columns of a result."""
-        own = {member.name: member.kind for member in self.members}
+        kinds = {member.name: member.kind for member in self.members}
         cells: Any = {"column": self.columns or {}, "beam": self.beams or {}}
-        own |= {
+        kinds |= {
             name: at_place(cells[place.kind], place.line, place.storey)
             for name, place in self.places.items()
         }
-        return {name: own[name] for name in self.parts.members}
+        return {name: kinds[name] for name in self.parts.members}
 
     @cached_property
     def struts(self) -> dict[str, Any]:
@@ -344,22 +344,22 @@ class Frame:
         panels = {node.name: node.panel for node in self.nodes}
         # Equal members are of one kind.
         known: dict[int, dict[tuple[str, float], Spring]] = {}
-        found: dict[FrameSpring, Spring | None] = {}
+        springs: dict[FrameSpring, Spring | None] = {}
         for spring in self.parts.springs:
             if spring.group == "panel":
-                found[spring] = panels.get(spring.member) or self.panel
+                springs[spring] = panels.get(spring.member) or self.panel
                 continue
             kind: Any = self.kinds[spring.member]
             if id(kind) not in known:
                 known[id(kind)] = {
-                    (group, position): own
+                    (group, position): of_place
                     for group in ("flexure", "shear")
-                    for position, own in getattr(kind, group) or ()
+                    for position, of_place in getattr(kind, group) or ()
                 }
             group = "flexure" if spring.rule == "layered" else spring.group
             otherwise = kind.axial_spring if group == "axial_spring" else None
-            found[spring] = known[id(kind)].get((group, spring.position), otherwise)
-        return found
+            springs[spring] = known[id(kind)].get((group, spring.position), otherwise)
+        return springs
 
     @cached_property
     def joints(self) -> dict[FrameSpring, Layered]:
@@ -374,22 +374,22 @@ class Frame:
     def landmarks(self) -> dict[FrameSpring, list[Landmark]]:
         """Cracking, yield and cap of each spring, first time on the virgin curve."""
         known: dict[int, list[Landmark]] = {}
-        found: dict[FrameSpring, list[Landmark]] = {}
+        landmarks: dict[FrameSpring, list[Landmark]] = {}
         sides: tuple[Literal[1, -1], ...] = (1, -1)
         for spring, made in self.given_springs.items():
             if spring.member in self.struts:
-                found[spring] = self.struts[spring.member].landmarks()
+                landmarks[spring] = self.struts[spring.member].landmarks()
                 continue
             kind = None if spring.group == "panel" else self.kinds[spring.member]
             if kind is not None and kind.yield_moment is not None:
                 turned = kind.yield_moment / spring.stiffness
                 yields = [Landmark("yield", side, turned, "yield_moment") for side in sides]
-                found[spring] = yields if spring.group == "flexure" else []
+                landmarks[spring] = yields if spring.group == "flexure" else []
                 continue
             if made is not None and spring.rule != "layered" and id(made) not in known:
                 known[id(made)] = made.landmarks()
-            found[spring] = known.get(id(made), [])
-        return found
+            landmarks[spring] = known.get(id(made), [])
+        return landmarks
 
     def without(self, *members: str) -> Self:
         """Return the frame after the loss of members.
@@ -405,21 +405,21 @@ class Frame:
             If there is no such member, or a node outside of the grid is left without one.
         """
         cells: Any = {"column": dict(self.columns or {}), "beam": dict(self.beams or {})}  # type: ignore[arg-type]
-        own = {member.name: member for member in self.members}
+        free = {member.name: member for member in self.members}
         for name in members:
             index_of(name, self.parts.members, "member")
-            if own.pop(name, None) is None:
+            if free.pop(name, None) is None:
                 kind, *at = self.places[name]
                 cells[kind].pop(tuple(at), None)
                 cells[kind][tuple(at)] = None
         columns, beams = (own_cells or None for own_cells in cells.values())
-        return replace(self, columns=columns, beams=beams, members=tuple(own.values()))
+        return replace(self, columns=columns, beams=beams, members=tuple(free.values()))
 
     @cached_property
     def named_kinds(self) -> dict[str, FrameMember]:
         """Kinds of its members by their names in a case file, without their rigid lengths."""
         cells: Any = self.columns, self.beams
-        kinds = [one for own in cells for one in (own or {}).values() if one]
+        kinds = [kind for of_grid in cells for kind in (of_grid or {}).values() if kind]
         named = names_of([*kinds, *(member.kind for member in self.members)])
         return {name: kind for (_, kind), name in named.items()}
 
@@ -428,14 +428,16 @@ class Frame:
         names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
 
         def changed(kind: FrameMember | None) -> FrameMember | None:
-            own = kind and kinds.get(names[stated(kind)])
-            return with_rigid_end(own, kind.rigid_end) if own and kind else kind
+            other = kind and kinds.get(names[stated(kind)])
+            return with_rigid_end(other, kind.rigid_end) if other and kind else kind
 
         columns, beams = (
-            {at: changed(kind) for at, kind in own.items()} if own else own  # type: ignore[union-attr]
-            for own in (self.columns, self.beams)
+            {at: changed(kind) for at, kind in of_grid.items()} if of_grid else of_grid  # type: ignore[union-attr]
+            for of_grid in (self.columns, self.beams)
         )
-        members = tuple(replace(one, kind=changed(one.kind) or one.kind) for one in self.members)
+        members = tuple(
+            replace(member, kind=changed(member.kind) or member.kind) for member in self.members
+        )
         return replace(self, columns=columns, beams=beams, members=members)
 
     def with_axial_failure(self, factor: float) -> Self:
@@ -469,9 +471,9 @@ class Frame:
 
     def load_of(self, member: str) -> float:
         """Return the dead load on a member, downward, per length along x [N/m]."""
-        for own in self.members:
-            if own.name == member:
-                return own.load
+        for free in self.members:
+            if free.name == member:
+                return free.load
         place, loads = self.places[member], self.beam_load
         if place.kind == "column":
             return 0.0
@@ -493,7 +495,9 @@ class Frame:
         """
         grids: Any = cells or (self.columns or {}, self.beams or {})
         drawn = drawn or {}
-        kinds = [one for own in grids for one in own.values() if one and one not in drawn]
+        kinds = [
+            kind for of_grid in grids for kind in of_grid.values() if kind and kind not in drawn
+        ]
         members = self.members if drawing is None else drawing.members
         kinds += [member.kind for member in members]
         names = names_of(kinds)
@@ -630,8 +634,8 @@ class Frame:
         upright |= cells_of_walls(walls, lines, len(heights))
         level = cells_of(beams, "beams", FrameMember, lines - 1, halves=Section)
         grid = Grid(heights, widths, upright, level)
-        given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
-        for node in given:
+        nodes_given = tuple(_arguments.several(more.pop("nodes", ()), "frame: nodes", "nodes"))
+        for node in nodes_given:
             _arguments.instance(node, "frame: nodes", FrameNode)
         stated = {
             "beam_load": more.pop("beam_load", 0.0), "dead_load": dead_load, "live_load": live_load
@@ -657,7 +661,7 @@ class Frame:
             _arguments.boolean(self_weight, "frame: self_weight"),
             mass,
             more.pop("floor_mass", None),
-            given,
+            nodes_given,
             tuple(more.get("members", ())),
             spans_of_walls(wall_spans, lines),
         )
@@ -674,10 +678,10 @@ class Frame:
             grid.note_on_bars(more["beam_load"])
         nodes = {node.name: node for node in more["nodes"]}
         for name, panel in grid.panels(drawing).items():
-            own = nodes.get(name, FrameNode(name))
-            nodes[name] = own if own.panel is not None else replace(own, panel=panel)
+            node = nodes.get(name, FrameNode(name))
+            nodes[name] = node if node.panel is not None else replace(node, panel=panel)
         more["nodes"] = tuple(nodes.values())
-        struts = [strut for one in grid.infilled(drawing.infills) for strut in one.members()]
+        struts = [strut for bay in grid.infilled(drawing.infills) for strut in bay.members()]
         more["members"] = (*drawing.members, *struts)
         frame = cls(heights, widths or None, members[0], members[1] or None, **more)
         # Under axial loads of another frame its sections alone do not say what it is.
@@ -693,9 +697,9 @@ class Frame:
         storeys: Any = self.storeys
         bays: Any = self.bays
         grid = Grid(storeys, bays, self.drawing.columns, self.drawing.beams)
-        own = {member.name for member in self.members}
+        free = {member.name for member in self.members}
         return tuple(
-            one for one in grid.infilled(self.drawing.infills) if own.issuperset(one.struts)
+            bay for bay in grid.infilled(self.drawing.infills) if free.issuperset(bay.struts)
         )
 
     @property
@@ -723,7 +727,7 @@ class Frame:
             drawn, sections, _ = drawings_of(self.named_kinds.values())
             return self._state(drawn=drawn) + sections if drawn else self._statement
         cells = drawing.columns, drawing.beams
-        different = [one for own in cells for one in own.values()]
+        different = [cell for of_grid in cells for cell in of_grid.values()]
         drawn, sections, hoops = drawings_of(
             [*different, *(member.kind for member in drawing.members)], drawing.panel_hoops
         )
@@ -762,8 +766,8 @@ def drawings_of(
     """
     drawings: dict[Section, str] = {}
     cells = list(cells)
-    kinds = [one for one in cells if isinstance(one, FrameMember)]
-    taken = {one.name for one in kinds}
+    kinds = [cell for cell in cells if isinstance(cell, FrameMember)]
+    taken = {cell.name for cell in kinds}
 
     def name_of(section: Section) -> _core.Text:
         names = (f"section-{i}" for i in count(1))
@@ -771,14 +775,14 @@ def drawings_of(
         return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))
 
     drawn: dict[Any, dict[str, Any]] = {}
-    for one in filter(is_drawn, [*cells, *(kind.sections for kind in kinds)]):
-        start, end = halves_of(one)
-        drawn[one] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
+    for cell in filter(is_drawn, [*cells, *(kind.sections for kind in kinds)]):
+        start, end = halves_of(cell)
+        drawn[cell] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
     named: Any = hoops
     if isinstance(hoops, Ties):
         # A drawing with these hoops; no member may be of it.
         like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
-        named = name_of(next((one for one in drawings if one.ties == hoops), like))
+        named = name_of(next((section for section in drawings if section.ties == hoops), like))
     groups = [
         _core.group("drawing", {"name": _core.Text(name), "version": _core.Text(VERSION)})
         + section.drawing()

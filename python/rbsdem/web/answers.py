@@ -148,12 +148,12 @@ class Answers:
         """Keep a case with its response that was computed elsewhere."""
         self._kept[key_of(case)] = known
 
-    def _solve(self, given: Any) -> Answered:
+    def _solve(self, stated: Any) -> Answered:
         """Return the answer of the program to the groups or the text of a case."""
-        faults = Faults([] if isinstance(given, str) else given)
+        faults = Faults([] if isinstance(stated, str) else stated)
         # A section may be drawn although the case is refused.
-        sections = {} if isinstance(given, str) else sections_of(given)
-        case, notes = case_of(given, self.records, faults)
+        sections = {} if isinstance(stated, str) else sections_of(stated)
+        case, notes = case_of(stated, self.records, faults)
         about: dict[str, Any] = {"sections": sections, "faults": faults.listed}
         if case is None:
             return Answered(notes=notes, **about)
@@ -161,7 +161,7 @@ class Answers:
         stopped = ""
         with recorded() as told, faults.kept():
             try:
-                if is_frame(given):
+                if is_frame(stated):
                     result, stopped = frames.solved(case)
                 else:
                     # The strains of a layered hinge follow from its openings.
@@ -171,7 +171,7 @@ class Answers:
                 if result is None or not result.time.size:
                     result = None
                     faults.add("", stopped)
-        notes = [*notes, *(str(one.message) for one in told)]
+        notes = [*notes, *(str(warning.message) for warning in told)]
         return Answered(result, case, notes=list(dict.fromkeys(notes)), stopped=stopped, **about)
 
     def _columns(
@@ -182,9 +182,9 @@ class Answers:
         if any(map(is_frame, cases)):
             raise RefusedError(400, "state: this is asked of columns")
         columns = []
-        for case, found in [(case, self.solved(case)) for case in cases]:
+        for case, answered in [(case, self.solved(case)) for case in cases]:
             pause()
-            columns.append(answer(case, found))
+            columns.append(answer(case, answered))
         return {"columns": columns}
 
     def loops(self, asked: Asked, pause: Pause) -> dict[str, Any]:
@@ -197,29 +197,29 @@ class Answers:
     def _loop(self, case: Any) -> dict[str, Any]:
         """Return what the page draws of a response."""
         begun = time.perf_counter()
-        found = self.solved(case)
-        drawing, result = found.drawing, found.result
-        answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
-        figures = {n: None if one is None else _figure(one) for n, one in found.sections.items()}
+        answered = self.solved(case)
+        drawing, result = answered.drawing, answered.result
+        answer: dict[str, Any] = {"faults": answered.faults, "notes": answered.notes}
+        figures = {n: s and _figure(s) for n, s in answered.sections.items()}
         if is_frame(case):
-            answer |= {"stopped": found.stopped, "sections": figures}
+            answer |= {"stopped": answered.stopped, "sections": figures}
             answer |= {} if result is None else frames.to_json(result)
         else:
             answer["figure"] = next(iter(figures.values()), None)
             if drawing is not None:
                 answer |= {"figure": _figure(drawing.section), "model": result.column.model}
             if result is not None:
-                title = found.case.title if found.case else ""
-                answer |= to_json(result) | {"stopped": found.stopped, "title": title}
-        return answer | {"seconds": round(max(found.seconds, time.perf_counter() - begun), 4)}
+                title = answered.case.title if answered.case else ""
+                answer |= to_json(result) | {"stopped": answered.stopped, "title": title}
+        return answer | {"seconds": round(max(answered.seconds, time.perf_counter() - begun), 4)}
 
     def checks(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the target displacement of a frame, and its members beside their limits."""
         (case, *_) = state_of(asked)
-        found = self.solved(case) if is_frame(case) else Answered()
-        if found.case is None or found.result is None:
+        answered = self.solved(case) if is_frame(case) else Answered()
+        if answered.case is None or answered.result is None:
             return {}
-        return frames.checked(found.case, found.result, Faults(case))
+        return frames.checked(answered.case, answered.result, Faults(case))
 
     # ---- the section ----------------------------------------------------------------------------
 
@@ -229,8 +229,8 @@ class Answers:
         if code not in ("aci318", "ec2"):
             raise RefusedError(400, "code must be aci318 or ec2")
 
-        def answer(_: Any, found: Answered) -> dict[str, Any]:
-            drawing = found.drawing
+        def answer(_: Any, answered: Answered) -> dict[str, Any]:
+            drawing = answered.drawing
             if drawing is None:
                 return {}
             section, load = drawing.section, drawing.axial_load
@@ -246,12 +246,12 @@ class Answers:
     def own(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return interaction diagrams by material laws, of section and joint; they take long."""
 
-        def answer(_: Any, found: Answered) -> dict[str, Any]:
-            if found.drawing is None:
+        def answer(_: Any, answered: Answered) -> dict[str, Any]:
+            if answered.drawing is None:
                 return {}
             return {
-                "section": _tried(_interaction, found.drawing.section, None),
-                "joint": _tried(_joint, found.result.column),
+                "section": _tried(_interaction, answered.drawing.section, None),
+                "joint": _tried(_joint, answered.result.column),
             }
 
         return self._columns(asked, pause, answer)
@@ -260,14 +260,14 @@ class Answers:
 
     def bands(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return for each path the band that holds 80 % of the points of left-out tests."""
-        return self._columns(asked, pause, lambda _, found: _band(found))
+        return self._columns(asked, pause, lambda _, answered: _band(answered))
 
     def scales(self, asked: Asked, pause: Pause) -> dict[str, Any]:
         """Return the peak drift under a motion by its scale, times that of the state."""
 
-        def answer(case: Any, found: Answered) -> dict[str, Any]:
-            drawn = found.drawing is not None and not isinstance(case, str)
-            if not drawn or not found.result.dynamic:
+        def answer(case: Any, answered: Answered) -> dict[str, Any]:
+            drawn = answered.drawing is not None and not isinstance(case, str)
+            if not drawn or not answered.result.dynamic:
                 return {"none": "scales are for a motion of the ground"}
             now = _arguments.number(first(case, "loading").get("scale", 1.0), "scale")
             rows = []
@@ -293,8 +293,8 @@ class Answers:
         if tests is None:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
 
-        def answer(case: Any, found: Answered) -> dict[str, Any]:
-            drawing = None if isinstance(case, str) else found.drawing
+        def answer(case: Any, answered: Answered) -> dict[str, Any]:
+            drawing = None if isinstance(case, str) else answered.drawing
             if drawing is None or drawing.section.hollow:
                 return {"none": "the folder has no tests of such columns"}
             try:
@@ -302,9 +302,12 @@ class Answers:
             except (RbsdemError, ValueError) as error:
                 return {"none": str(error)}
             rows = []
-            for one in near:
+            for neighbour in near:
                 pause()
-                rows.append(_card(_predicted(one.specimen)) | {"distance": round(one.distance, 3)})
+                rows.append(
+                    _card(_predicted(neighbour.specimen))
+                    | {"distance": round(neighbour.distance, 3)}
+                )
             return {"tests": rows}
 
         return self._columns(asked, pause, answer) | {"tests": len(tests)}
@@ -319,12 +322,12 @@ class Answers:
         if type(which) is not int or not 0 <= which < len(cases):
             raise RefusedError(400, "column must be the number of a column")
         case = cases[which]
-        found = self.solved(case)
-        if found.result is None:
-            return {"faults": found.faults}
+        answered = self.solved(case)
+        if answered.result is None:
+            return {"faults": answered.faults}
         csv = form == "csv"
         return {
-            "text": _csv_of(found.result) if csv else namelist(case, self.records),
+            "text": _csv_of(answered.result) if csv else namelist(case, self.records),
             "name": "frame" if is_frame(case) else f"column_{'ab'[which]}",
         }
 
@@ -415,10 +418,10 @@ def _peak(values: Array) -> float | None:
     return number(float(np.max(np.abs(values), initial=0.0)))
 
 
-def _band(found: Answered) -> dict[str, Any]:
+def _band(answered: Answered) -> dict[str, Any]:
     """Return the band of a prediction."""
-    result = found.result
-    if found.drawing is None or result.dynamic:
+    result = answered.result
+    if answered.drawing is None or result.dynamic:
         return {"none": "a band is for a drawn column on a path"}
     with unwarned(Warning):
         try:
@@ -448,11 +451,11 @@ def defect(error: Exception) -> str:
     )
 
 
-def _tried(make: Callable[..., Any], *given: Any) -> Any:
+def _tried(make: Callable[..., Any], *arguments: Any) -> Any:
     """Return the value of a function, or the text of its error."""
     with unwarned(Warning):
         try:
-            return make(*given)
+            return make(*arguments)
         except RbsdemError as error:
             return {"fault": str(error)}
         except Exception as error:
@@ -475,8 +478,8 @@ def _figure(section: Section) -> dict[str, Any]:
 def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
     options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
     diagram = diagram_of(section, load, confined=confined, **options)
-    found = asdict(diagram.events).items()
-    events = {name: [number(p["curvature"]), number(p["moment"])] for name, p in found if p}
+    corners = asdict(diagram.events).items()
+    events = {name: [number(p["curvature"]), number(p["moment"])] for name, p in corners if p}
     points = {"curvature": numbers(diagram.curvature), "moment": numbers(diagram.moment)}
     return points | {"events": events}
 
@@ -484,11 +487,11 @@ def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
 def _interaction(section: Section, code: str | None) -> dict[str, Any]:
     points = _POINTS if code is None else 60
     diagram = interaction(section, code, points=points)  # type: ignore[arg-type]
-    found = _curve(diagram) | {"code": code}
+    curves = _curve(diagram) | {"code": code}
     if code is not None:
-        found["design_axial_load"] = numbers(diagram.design_axial_load)
-        found["design_moment"] = numbers(diagram.design_moment)
-    return found
+        curves["design_axial_load"] = numbers(diagram.design_axial_load)
+        curves["design_moment"] = numbers(diagram.design_moment)
+    return curves
 
 
 def _joint(column: LayeredColumn) -> dict[str, Any]:
@@ -500,7 +503,9 @@ def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
 
 
 def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
-    return [asdict(one) | {"value": number(one.value)} for one in code_values(section, span, load)]
+    return [
+        asdict(value) | {"value": number(value.value)} for value in code_values(section, span, load)
+    ]
 
 
 def _points(line: Array) -> list[list[float | None]]:
@@ -537,7 +542,7 @@ def _predicted(test: Specimen) -> Prediction:
 def _card(row: Prediction) -> dict[str, Any]:
     """Return a test for JSON; without a comparison it has no lines."""
     specimen, c = row.specimen, row.comparison
-    found: dict[str, Any] = {
+    card: dict[str, Any] = {
         "name": specimen.name,
         "failure": specimen.failure_mode or "not known",
         "section": specimen.section,
@@ -548,15 +553,15 @@ def _card(row: Prediction) -> dict[str, Any]:
         "scores": {name: number(row.score(name)) for name in _SCORES},
     }
     if c is None:
-        return found
+        return card
     model = c.model_force[: c.rows]
     displacement = float(np.max(np.abs(c.displacement))) or 1.0
     test = float(np.max(np.abs(c.test_force))) or 1.0
     force = min(max(test, float(np.max(np.abs(model), initial=0.0))), _LARGEST * test)
     lines = {"test": c.test_force / force, "model": np.clip(model / force, -_BEYOND, _BEYOND)}
-    found |= {"displacement": displacement, "force": force, "height": c.height}
+    card |= {"displacement": displacement, "force": force, "height": c.height}
     for name, values in lines.items():
         rows = shown_rows(c.displacement[: values.size], values, _POINTS_OF_TEST)
         line = np.column_stack((c.displacement[rows] / displacement, values[rows]))
-        found[name] = np.rint(1e3 * line).astype(np.int64).ravel().tolist()
-    return found
+        card[name] = np.rint(1e3 * line).astype(np.int64).ravel().tolist()
+    return card

@@ -57,7 +57,9 @@ def to_json(result: FrameResult | BuildingResult) -> dict[str, Any]:
         return _of_frame(result, result)
     made = {name: _of_frame(frame, result) for name, frame in result.frames.items()}
     whole = dict(next(iter(made.values())))
-    frames = {name: {key: one[key] for key in _OF_ONE_FRAME} for name, one in made.items()}
+    frames = {
+        name: {key: of_frame[key] for key in _OF_ONE_FRAME} for name, of_frame in made.items()
+    }
     pictures = np.searchsorted(result.time, np.array(whole["time"])[whole["pictures"]] - 1e-9)
     roof = (result.floor_x, result.floor_y, result.floor_rotation)
     lines = []
@@ -67,7 +69,7 @@ def to_json(result: FrameResult | BuildingResult) -> dict[str, Any]:
     plan = {
         "lines": lines,
         "centre": result.building.centres[-1].tolist(),
-        "roof": rounded(np.column_stack([one[pictures, -1] for one in roof]), 6),
+        "roof": rounded(np.column_stack([of_frame[pictures, -1] for of_frame in roof]), 6),
     }
     return whole | {"frames": frames, "plan": plan}
 
@@ -86,12 +88,12 @@ def _of_frame(result: FrameResult, whole: FrameResult | BuildingResult) -> dict[
     moved_nodes = nodes + np.stack((result.x[pictures], result.y[pictures]), axis=-1)
     still: list[Array] = []
     moved: list[Array] = []
-    for found, at, scale in ((still, nodes[None], 0.0), (moved, moved_nodes, 1.0)):
+    for lines, at, scale in ((still, nodes[None], 0.0), (moved, moved_nodes, 1.0)):
         shown = pictures[: len(at)]
         turns = spring_rotations(result, shown)
-        for one in frame.geometry.values():
-            line = deformed(result, one, shown, scale, turns, _SHARES)
-            found.append(np.concatenate((at[:, [one.start]], line, at[:, [one.end]]), axis=1))
+        for member in frame.geometry.values():
+            line = deformed(result, member, shown, scale, turns, _SHARES)
+            lines.append(np.concatenate((at[:, [member.start]], line, at[:, [member.end]]), axis=1))
     with unwarned(Warning):
         period = float(modes(whole.structure, 1).period[0]) if parts.mass > 0.0 else None
     ends = result.moment_from[pictures], result.moment_to[pictures]
@@ -154,19 +156,19 @@ def checked(case: Case, result: FrameResult | BuildingResult, faults: Faults) ->
                 made = made or judged(asked, result)
         except RbsdemError as error:
             faults.add("", str(error))
-    found: dict[str, Any] = {"faults": faults.listed}
+    answer: dict[str, Any] = {"faults": faults.listed}
     if made is None:
-        return found
+        return answer
     for assessment in made.assessments[:1]:
-        found |= {"limits_of": assessment.source, "levels": assessment.levels}
-        found |= {"level": made.levels[0], "accepted": assessment.accepted(made.levels[0])}
-        found |= {"counts": assessment.counts()}
-        found |= {"at_target": assessment.displacement is not None}
-        found |= {"ends": _ends(assessment), "notes": assessment.warnings}
+        answer |= {"limits_of": assessment.source, "levels": assessment.levels}
+        answer |= {"level": made.levels[0], "accepted": assessment.accepted(made.levels[0])}
+        answer |= {"counts": assessment.counts()}
+        answer |= {"at_target": assessment.displacement is not None}
+        answer |= {"ends": _ends(assessment), "notes": assessment.warnings}
     point = made.target
     if point is not None:
         lines = point.lines
-        found["target"] = {
+        answer["target"] = {
             "spectrum": point.spectrum.name,
             "reached": point.reached,
             "storey_drift": numbers(point.storey_drift) if point.reached else None,
@@ -179,20 +181,20 @@ def checked(case: Case, result: FrameResult | BuildingResult, faults: Faults) ->
                 for name in ("displacement", "signed", "base_shear", "period", "ductility")
             },
         }
-    return found
+    return answer
 
 
 def _ends(made: Assessment) -> list[dict[str, Any]]:
     """Return the worse side of each end: its ratio, what governs, how many levels it exceeds."""
     states, last = made.states(), f"ratio_{made.levels[-1]}"
-    found: dict[tuple[str, str], dict[str, Any]] = {}
+    worst: dict[tuple[str, str], dict[str, Any]] = {}
     for row in made.rows:
         at = row["member"], row["end"]
         ratio = float(np.nan_to_num(max(row[last], row["ratio_shear"])))
-        if at not in found or ratio > found[at]["ratio"]:
+        if at not in worst or ratio > worst[at]["ratio"]:
             about = {name: row[name] for name in ("member", "end", "governed_by", "status")}
-            found[at] = {**about, "ratio": ratio, "exceeded": states[at]}
-    return [one | {"ratio": number(one["ratio"])} for one in found.values()]
+            worst[at] = {**about, "ratio": ratio, "exceeded": states[at]}
+    return [end | {"ratio": number(end["ratio"])} for end in worst.values()]
 
 
 def rounded(values: Array, digits: int = 5) -> Any:

@@ -167,11 +167,11 @@ def inputs(statement: _core.Statement) -> DataFrame:
         The groups.
     """
     known, rows, on_paper = _core.keys(), [], scales()
-    for group, given in _core.groups(statement):
-        own = [*known["groups"].get(group, []), *known["section"].get(given.get("shape"), [])]
-        own += known["rules"].get(given.get("rule"), {}).get("keys", [])
-        keys = {key["name"]: key for key in own}
-        for name, value in given.items():
+    for group, stated in _core.groups(statement):
+        listed = [*known["groups"].get(group, []), *known["section"].get(stated.get("shape"), [])]
+        listed += known["rules"].get(stated.get("rule"), {}).get("keys", [])
+        keys = {key["name"]: key for key in listed}
+        for name, value in stated.items():
             if name in _NUMBERS:
                 continue
             key = keys.get(name, {})
@@ -237,7 +237,7 @@ def _of_plan(building: Building) -> Sheet:
     about = f"{building!r}: mass {building.parts.mass / 1e3:.4g} t"
     if building.parts.mass > 0:
         about += f"; elastic periods {', '.join(f'{t:.3g}' for t in modes(building, 3).period)} s"
-    drawn = [partial(_titled, *one) for one in list(_drawings(building).items())[:_MOST_SECTIONS]]
+    drawn = [partial(_titled, *pair) for pair in list(_drawings(building).items())[:_MOST_SECTIONS]]
     shown = (partial(buildings.plan, building), *drawn)
     return Sheet("Inputs", f"{about}.", shown, inputs(building._groups()), True)
 
@@ -282,25 +282,25 @@ def _of_response(result: FrameResult) -> Iterator[Sheet]:
 
 def _walls(result: ColumnResult | FrameResult) -> Iterator[Sheet]:
     """Yield what tests say of the accuracy of drawn walls."""
-    told = "; ".join(f"{name}: {one}" for name, one in result.wall_accuracy().items())
+    told = "; ".join(f"{name}: {accuracy}" for name, accuracy in result.wall_accuracy().items())
     if told:
         yield Sheet("Accuracy of walls", f"{told}.")
 
 
 @sheets_of.register
 def of_assessment(
-    found: Assessment, target: Target | None = None, check: Any = None
+    assessment: Assessment, target: Target | None = None, check: Any = None
 ) -> Iterator[Sheet]:
     """Yield the sheets of an assessment, with the target that it was made at and its check."""
-    result = found.result
-    parts = {"": found}
+    result = assessment.result
+    parts = {"": assessment}
     if isinstance(result, BuildingResult):
         yield _of_plan(result.building)
-        parts = {f"{name} ": found.frame(name) for name in result.frames}
+        parts = {f"{name} ": assessment.frame(name) for name in result.frames}
     else:
         yield _of_structure(result.frame)
     curves: list[Callable[[], Any]] = [partial(frames.pushover, result)]
-    text = repr(found)
+    text = repr(assessment)
     if target is not None:
         curves.append(partial(frames.target, target))
         end = () if target.reached else ("The push-over ends before the target.",)
@@ -315,37 +315,37 @@ def of_assessment(
         )
         yield Sheet("Error of the target", words, table=check.to_pandas())
     row = -1
-    if found.displacement is not None:
-        away = np.abs(result.displacement - found.displacement)
+    if assessment.displacement is not None:
+        away = np.abs(result.displacement - assessment.displacement)
         row = int(away.argmin())
     if isinstance(result, BuildingResult):
         shapes = (partial(draw, result, row=row) for draw in (buildings.plan, buildings.building))
-        yield Sheet("Building", _judged(found), tuple(shapes), found.worst(10))
+        yield Sheet("Building", _judged(assessment), tuple(shapes), assessment.worst(10))
     for name, part in parts.items():
-        own = part.result
-        if own.frame.storey_heights:
+        response = part.result
+        if response.frame.storey_heights:
             yield Sheet(f"{name}Storeys", _STOREYS, table=_storeys(part))
-        drawn: list[Callable[[], Any]] = [partial(frames.frame, own, row=row)]
-        if own.frame.storey_heights and found.displacement is None:
-            drawn.append(partial(frames.storey_drift, own))
+        drawn: list[Callable[[], Any]] = [partial(frames.frame, response, row=row)]
+        if response.frame.storey_heights and assessment.displacement is None:
+            drawn.append(partial(frames.storey_drift, response))
         drawn.append(partial(frames.assessment, part))
         yield Sheet(f"{name}Members", _judged(part), tuple(drawn), part.worst(10))
-    yield Sheet("All members", table=found.to_pandas(), beside=True)
-    yield Sheet("Assumed", f"{found.assumed} {result.scope_note} {_LEFT_OUT}")
+    yield Sheet("All members", table=assessment.to_pandas(), beside=True)
+    yield Sheet("Assumed", f"{assessment.assumed} {result.scope_note} {_LEFT_OUT}")
 
 
-def _judged(found: Assessment) -> str:
+def _judged(assessment: Assessment) -> str:
     """Return how many ends exceed each level, in words before the largest ratios."""
-    counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
+    counts = ", ".join(f"{name}: {number}" for name, number in assessment.counts().items())
     told = "What exceeds its strength in shear has the colour of the last level."
-    text = f"{found.source}: ends and joints that exceed each level: {counts}."
-    return " ".join((text, told, *found.warnings, "The ten largest ratios follow."))
+    text = f"{assessment.source}: ends and joints that exceed each level: {counts}."
+    return " ".join((text, told, *assessment.warnings, "The ten largest ratios follow."))
 
 
-def _storeys(found: Assessment) -> DataFrame:
+def _storeys(assessment: Assessment) -> DataFrame:
     """Return drifts, shears and P-Delta coefficients of the storeys, largest of the rows judged."""
-    result = found.result
-    _, rows = rows_at(result, found.displacement)
+    result = assessment.result
+    _, rows = rows_at(result, assessment.displacement)
     drift, shear, theta = (
         np.abs(between(rows, values)).max(axis=0)
         for values in (result.storey_drift, result.storey_shear, result.stability_coefficient)
@@ -365,16 +365,18 @@ def _of_section(
         )
     load = _core.group("column", {"axial_load": axial_load, "height": length})
     yield _drawn(drawing, load)
-    found = diagram(drawing, axial_load)
-    lines = [found.idealise("caltrans"), found.idealise("priestley")]
-    drawn = (partial(section.moment_curvature, found, idealise="caltrans"),)
-    told = [found, *lines, *(line.capacity(length) for line in lines if length is not None)]
+    curve = diagram(drawing, axial_load)
+    lines = [curve.idealise("caltrans"), curve.idealise("priestley")]
+    drawn = (partial(section.moment_curvature, curve, idealise="caltrans"),)
+    told = [curve, *lines, *(line.capacity(length) for line in lines if length is not None)]
     yield Sheet("Moment and curvature", "; ".join(map(str, told)), drawn)
-    yield Sheet("Moment-curvature points", table=found.to_pandas(), beside=True)
+    yield Sheet("Moment-curvature points", table=curve.to_pandas(), beside=True)
     strengths = {code: interaction(drawing, code) for code in get_args(Code)}
     for code, strength in strengths.items():
         (arm, of_moment), (scale, of_force) = paper("N m"), paper("N")
-        moment, design = (arm * strength.moment_at(axial_load, design=one) for one in (False, True))
+        moment, design = (
+            arm * strength.moment_at(axial_load, design=reduced) for reduced in (False, True)
+        )
         words = (
             f"Moment with N {scale * axial_load:.4g} {of_force}: nominal {moment:.4g} "
             f"{of_moment}, design {design:.4g} {of_moment}."
@@ -386,17 +388,17 @@ def _of_section(
 
 
 @sheets_of.register
-def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
+def _of_ensemble(ensemble: Ensemble) -> Iterator[Sheet]:
     """Yield the sheets of an ensemble."""
-    yield _of_structure(next(iter(found.columns.values())))
-    table = found.to_pandas()
-    states = {"status": list(found.counts), "runs": list(found.counts.values())}
-    yield Sheet("Runs", str(found), table=data_frame(states))
+    yield _of_structure(next(iter(ensemble.columns.values())))
+    table = ensemble.to_pandas()
+    states = {"status": list(ensemble.counts), "runs": list(ensemble.counts.values())}
+    yield Sheet("Runs", str(ensemble), table=data_frame(states))
     noted = table[["warnings", "error"]].melt(var_name="kind", value_name="text")
     noted = noted[noted["text"] != ""].value_counts().rename("runs").reset_index()
     if len(noted):
         yield Sheet("Warnings and errors", table=noted.head(20))
-    names = list(found.measures)
+    names = list(ensemble.measures)
     measured = table.assign(**table[names].abs()).groupby("column", observed=True)[names]
     shares = measured.quantile([0.0, 0.16, 0.5, 0.84, 1.0]).stack().unstack(1)
     shares.columns = ["least", "16 %", "median", "84 %", "largest"]
@@ -406,32 +408,32 @@ def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
 
 
 @sheets_of.register
-def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[Sheet]:
+def _of_ida(analysis: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[Sheet]:
     """Yield the sheets of an incremental dynamic analysis."""
-    structure = next(iter(found.runs.columns.values()))
+    structure = next(iter(analysis.runs.columns.values()))
     yield _of_structure(structure)
     states = ", ".join(limits or {"collapse": None})
-    about = {"intensity": found.runs.measure.label, "limit states": states} | found.settings
+    about = {"intensity": analysis.runs.measure.label, "limit states": states} | analysis.settings
     about = {name: str(value) for name, value in about.items()}
-    given = {"setting": list(about), "value": list(about.values())}
-    yield Sheet("Analysis", _damped(structure), table=data_frame(given))
-    motions = {name: components(record) for name, record in found.runs.motions.items()}
+    settings = {"setting": list(about), "value": list(about.values())}
+    yield Sheet("Analysis", _damped(structure), table=data_frame(settings))
+    motions = {name: components(record) for name, record in analysis.runs.motions.items()}
     records = {
         "record": list(motions),
         "points": [max(each.acceleration.size for each in parts) for parts in motions.values()],
         "step_s": [parts[0].dt for parts in motions.values()],
         "peak_m/s2": [max(each.pga for each in parts) for parts in motions.values()],
     }
-    if len(found.runs.columns) == 1:
-        records["collapse_m/s2"] = np.ravel(found.collapse_intensity)
+    if len(analysis.runs.columns) == 1:
+        records["collapse_m/s2"] = np.ravel(analysis.collapse_intensity)
     yield Sheet("Records", table=data_frame(records))
-    yield Sheet("Curves", str(found), (partial(many.ida, found),))
-    level, fractiles = found.fractiles()
+    yield Sheet("Curves", str(analysis), (partial(many.ida, analysis),))
+    level, fractiles = analysis.fractiles()
     names = (f"fractile_{share}_drift" for share in (16, 50, 84))
     rows = {"intensity_m/s2": level} | dict(zip(names, fractiles, strict=True))
     yield Sheet("Fractiles", table=data_frame(rows), beside=True)
     try:
-        curves = found.fragilities(limits or {"collapse": ("collapse", None)})
+        curves = analysis.fragilities(limits or {"collapse": ("collapse", None)})
     except InputError as error:
         yield Sheet("Fragility", str(error))
         curves = {}
@@ -441,7 +443,7 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
     ]
     if curves:
         yield Sheet("Fragility", _FITTED, (partial(many.fragilities, curves),), data_frame(fitted))
-    table = found.to_pandas()
+    table = analysis.to_pandas()
     ended = table["status"].value_counts().rename("runs").reset_index()
     yield Sheet("How the runs ended", table=ended)
     yield Sheet("Runs", table=table, beside=True)
@@ -457,32 +459,34 @@ def _damped(structure: Structure) -> str:
 def _of_structure(structure: Structure) -> Sheet:
     """Return the sheet of what was given of a structure."""
     if isinstance(structure, LayeredColumn) and structure.drawing is not None:
-        (own,) = (given for name, given in _core.groups(structure._groups()) if name == "column")
+        (keys,) = (values for name, values in _core.groups(structure._groups()) if name == "column")
         shown = ("height", "axial_load", "mass", "top_mass", "kinematics")
-        return _drawn(structure.drawing.section, _core.group("column", {n: own[n] for n in shown}))
+        return _drawn(structure.drawing.section, _core.group("column", {n: keys[n] for n in shown}))
     if not isinstance(structure, Frame):
         return Sheet("Inputs", table=inputs(structure._groups()))
-    given = inputs(structure._statement)
+    table = inputs(structure._statement)
     drawings = list(_drawings(structure).items())[:_MOST_SECTIONS]
-    drawn = [partial(_titled, *one) for one in drawings]
+    drawn = [partial(_titled, *pair) for pair in drawings]
     # Layers and springs of drawn members fill pages.
     return Sheet(
         "Inputs",
         _described(structure),
         (partial(frames.frame, structure), *drawn),
-        given,
-        beside=len(given) > 60,
+        table,
+        beside=len(table) > 60,
     )
 
 
 def _drawings(frame: Frame) -> dict[Section, str]:
     """Return the different sections of the members of a frame, and the names of these."""
-    found: dict[Section, list[str]] = {}
+    names_of: dict[Section, list[str]] = {}
     for name, kind in frame.kinds.items():
-        for one in dict.fromkeys(kind.sections or ()):
-            found.setdefault(one, []).append(name)
-    more = {one: f" and {len(names) - 1} more" for one, names in found.items() if len(names) > 1}
-    return {one: names[0] + more.get(one, "") for one, names in found.items()}
+        for drawing in dict.fromkeys(kind.sections or ()):
+            names_of.setdefault(drawing, []).append(name)
+    return {
+        drawing: names[0] + (f" and {len(names) - 1} more" if len(names) > 1 else "")
+        for drawing, names in names_of.items()
+    }
 
 
 def _titled(drawing: Section, title: str) -> Any:
@@ -496,7 +500,7 @@ def _described(frame: Frame) -> str:
     parts = frame.parts
     storeys, bays = (tuple(getattr(frame, name) or ()) for name in ("storeys", "bays"))
     sizes = [
-        ", ".join(f"{one:g}" for one in (several[:1] if len(set(several)) == 1 else several))
+        ", ".join(f"{length:g}" for length in (several[:1] if len(set(several)) == 1 else several))
         for several in (storeys, bays)
     ]
     scale, of_force = paper("N")
@@ -513,7 +517,7 @@ def _described(frame: Frame) -> str:
     if parts.mass > 0:
         first = modes(frame, min(3, len(parts.nodes))).period
         words.append(f"elastic periods {', '.join(f'{t:.3g}' for t in first)} s")
-    drawn = [f"\n{names}: {one}." for one, names in _drawings(frame).items()]
+    drawn = [f"\n{names}: {section}." for section, names in _drawings(frame).items()]
     return "; ".join(words) + "." + "".join(drawn)
 
 

@@ -103,10 +103,10 @@ def building() -> dict[str, Any]:
 
 def groups_drawn(text: str) -> list[Any]:
     """Return the groups of a text as the page has them, without what it has no need to say."""
-    read = [one for one in groups_of_text(text) if one != _STATIC and one[0] != "units"]
+    read = [group for group in groups_of_text(text) if group != _STATIC and group[0] != "units"]
     for _, values in read:
         values.pop("source", None)
-    return [[*one] for one in read]
+    return [[*group] for group in read]
 
 
 class RefusedError(Exception):
@@ -208,8 +208,8 @@ def drawings(groups: Groups) -> Iterator[tuple[str, list[int]]]:
     """Yield the name of each drawing and the numbers of its groups."""
     starts = [i for i, (name, _) in enumerate(groups) if name == "drawing"]
     for begin, end in pairwise([*starts, len(groups)]):
-        own = [i for i in range(begin + 1, end) if groups[i][0] in _OF_DRAWING]
-        yield str(groups[begin][1].get("name", "")), [begin, *own]
+        block = [i for i in range(begin + 1, end) if groups[i][0] in _OF_DRAWING]
+        yield str(groups[begin][1].get("name", "")), [begin, *block]
 
 
 def key_of(value: object) -> str:
@@ -240,11 +240,11 @@ def state_of(asked: Mapping[str, Any]) -> list[Any]:
 
 def _is_groups(case: object) -> bool:
     return isinstance(case, list) and all(
-        isinstance(one, list)
-        and len(one) == 2
-        and isinstance(one[0], str)
-        and isinstance(one[1], dict)
-        for one in case
+        isinstance(group, list)
+        and len(group) == 2
+        and isinstance(group[0], str)
+        and isinstance(group[1], dict)
+        for group in case
     )
 
 
@@ -330,7 +330,7 @@ def _entry(key: str, value: Any) -> str:
         return f"{key} = {_written(key, value)}"
     if not value:
         raise InputError(f"{key} must not be empty")
-    words = [_written(key, one) for one in value]
+    words = [_written(key, entry) for entry in value]
     rows = [", ".join(words[i : i + 16]) for i in range(0, len(words), 16)]
     return f"{key} = " + ",\n   ".join(rows)
 
@@ -342,7 +342,7 @@ def _written(key: str, value: Any) -> str:
         return repr(value).removesuffix(".0")
     if not isinstance(value, str):
         raise InputError(f"{key} = {_arguments.shown(value)} must be a number or a text")
-    quoted = "".join(one if one.isprintable() else " " for one in value[:500]).replace("'", "''")
+    quoted = "".join(c if c.isprintable() else " " for c in value[:500]).replace("'", "''")
     return f"'{quoted}'"
 
 
@@ -483,22 +483,22 @@ def _drawn_again(groups: list[Any], column: Column | Frame) -> list[Any]:
 
 def sections_of(case: Any) -> dict[str, Section | None]:
     """Return the sections of a case by the names of their drawings; None for a wrong one."""
-    found: dict[str, Section | None] = {}
+    sections: dict[str, Section | None] = {}
     parts: dict[str, list[dict[str, Any]]] = {}
     for name, block in drawings(case):
         # Materials are those of the drawing before it where it has none.
-        own = {case[i][0] for i in block}
-        parts = {n: parts[n] for n in ("concrete", "steel") if n in parts and n not in own}
+        named = {case[i][0] for i in block}
+        parts = {n: parts[n] for n in ("concrete", "steel") if n in parts and n not in named}
         for i in block:
             values = {key: value for key, value in case[i][1].items() if value is not None}
             parts.setdefault(case[i][0], []).append(values)
         try:
             with recorded():
-                found[name] = section_of(parts)
+                sections[name] = section_of(parts)
         except (InputError, TypeError, ValueError, KeyError, AttributeError, OverflowError):
             # What is wrong is told by the reader of the case.
-            found[name] = None
-    return found
+            sections[name] = None
+    return sections
 
 
 # ---- numbers for JSON ---------------------------------------------------------------------------
