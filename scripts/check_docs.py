@@ -7,7 +7,7 @@ In README.md and the Markdown files of docs:
 - a block after ``<!-- file: NAME -->`` is written to a file of that name in a scratch folder;
 - a block of language ``console`` is run there, line by line that begins with ``$``, and the output
   (both streams) must be what stands below it; ``...`` stands for anything within a line;
-- a block of language ``python`` is run there with this interpreter and must not fail; if a block of
+- a block of language ``python`` is run there by itself and must not fail; if a block of
   language ``text`` follows at once, that is what it prints;
 - a block after ``<!-- skip -->`` is left alone;
 - a name of a test (``test_...``, or its begin with an ellipsis) must be that of one.
@@ -27,6 +27,8 @@ import re
 import subprocess
 import sys
 import tempfile
+import traceback
+import warnings
 from pathlib import Path
 
 BLOCK = re.compile(
@@ -151,7 +153,7 @@ def check(path: Path, folder: Path) -> list[str]:
         elif block["language"] == "console":
             faults += console(body, folder, f"{path.name}:{line}")
         elif block["language"] == "python":
-            code, output = run([sys.executable, "-W", "error", "-c", body], folder)
+            code, output = run_block(body, folder)
             if code:
                 faults.append(f"{path.name}:{line}: exit code {code}\n{output}")
             elif following and following["language"] == "text" and not following["mark"]:
@@ -182,13 +184,41 @@ def console(body: str, folder: Path, place: str) -> list[str]:
     return faults
 
 
+def run_block(body: str, folder: Path) -> tuple[int, str]:
+    """Run a program in a copy of this process, which has the libraries; warnings are errors."""
+    with tempfile.TemporaryFile() as output:
+        sys.stdout.flush()
+        child = os.fork()
+        if not child:
+            code = 1
+            os.dup2(output.fileno(), 1)
+            os.dup2(output.fileno(), 2)
+            try:
+                os.chdir(folder)
+                sys.path[0] = str(folder)
+                warnings.simplefilter("error")
+                exec(compile(body, "<string>", "exec"), {"__name__": "__main__"})
+                code = 0
+            except BaseException:
+                traceback.print_exc()
+            finally:
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(code)
+        _, status = os.waitpid(child, 0)
+        output.seek(0)
+        return status, without_blanks(output.read().decode())
+
+
+def without_blanks(text: str) -> str:
+    """Return a text without blanks at the end of lines, which do not survive an editor."""
+    return re.sub(r"[ \t]+$", "", text, flags=re.MULTILINE)
+
+
 def run(command: list[str], folder: Path) -> tuple[int, str]:
     """Run a command in the scratch folder with this interpreter's programs first in the path."""
     programs = Path(sys.executable).parent
-    environment = os.environ | {
-        "PATH": f"{programs}{os.pathsep}{os.environ.get('PATH', '')}",
-        "MPLBACKEND": "Agg",
-    }
+    environment = os.environ | {"PATH": f"{programs}{os.pathsep}{os.environ.get('PATH', '')}"}
     done = subprocess.run(
         command,
         cwd=folder,
@@ -199,8 +229,7 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
         check=False,
         timeout=300,
     )
-    # Blanks at the end of a line do not survive an editor.
-    return done.returncode, re.sub(r"[ \t]+$", "", done.stdout, flags=re.MULTILINE)
+    return done.returncode, without_blanks(done.stdout)
 
 
 def main() -> int:
@@ -210,6 +239,9 @@ def main() -> int:
     ]  # fmt: skip
     faults = [] if sys.argv[1:] else check_names()
     source = tests()
+    os.environ["MPLBACKEND"] = "Agg"
+    for library in ("matplotlib.pyplot", "pandas", "rbsdem.plot"):
+        importlib.import_module(library)
     for path in paths:
         faults += missing_tests(path, source)
         with tempfile.TemporaryDirectory() as folder:

@@ -52,7 +52,7 @@ print(pushes["infilled"].scope_note)
 # One record, until the storeys with masonry stand on columns that do not.
 motion = rbsdem.motions.synthetic(3)[2]
 print("\nfactor of the record   largest storey drifts (%), roof last")
-for factor in (1.0, 2.0, 3.0, 4.0, 6.0, 8.0):
+for factor in (1.0, 3.0, 5.0, 8.0):
     for name in ("open ground storey", "infilled"):
         quake = rbsdem.time_history(
             frames[name], ground_acceleration=motion.scaled(factor), method="newmark", dt=0.01,

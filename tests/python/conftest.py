@@ -94,6 +94,12 @@ def command(monkeypatch, capfd) -> Run:
     return run
 
 
+@pytest.fixture
+def without_figures(monkeypatch) -> None:
+    """Let reports be written without their figures, which take as long as all else together."""
+    monkeypatch.setattr("rbsdem.web.sheets._image", lambda draw: "")
+
+
 @pytest.fixture(scope="session")
 def case_text() -> Callable[..., str]:
     """Text of the minimal case, its groups replaced, added, doubled (list) or left out (None)."""

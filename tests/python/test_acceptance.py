@@ -251,6 +251,7 @@ def test_a_record_is_judged_by_its_envelope(frame):
         assess(quake, at=0.1)
 
 
+@pytest.mark.usefixtures("without_figures")
 def test_the_report_of_an_assessment_is_short(push, tmp_path):
     found = target(push, DesignSpectrum.en_1998(0.25, "C"), "en_1998")
     checked = assess(push, "en_1998_3", at=found)

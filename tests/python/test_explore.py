@@ -786,6 +786,7 @@ def test_a_record_is_reported_with_its_tables_and_its_case(at, tmp_path):
         rbsdem.report(record, tmp_path / "y.html", **asked, date=2026)
 
 
+@pytest.mark.usefixtures("without_figures")
 def test_a_report_leaves_the_files_of_the_user_alone(tmp_path, capsys):
     member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.01)
     frame = rbsdem.Frame.grid([3.2], [6.0], columns=member, beams=member, beam_load=2e4)

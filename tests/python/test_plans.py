@@ -279,6 +279,7 @@ def test_what_is_of_one_frame_refuses_a_building(pushed):
         plot.assessment(found)
 
 
+@pytest.mark.usefixtures("without_figures")
 def test_the_command_line_runs_pairs_and_reports(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
 
@@ -348,6 +349,7 @@ def test_runs_of_pairs_are_those_of_one_by_one(house, tmp_path):
     assert list(again.motions) == ["swing 0 and swing 3", "swing 0 and swing 1"]
 
 
+@pytest.mark.usefixtures("without_figures")
 def test_the_intensity_of_a_pair_is_of_both_components(house, tmp_path):
     pairs = {"a": (swings(0), swings(1)), "b": (swings(2), swings(0))}
     period = 1.0 / rbsdem.modes(house).frequency[0]

@@ -190,7 +190,7 @@ def closed():
 
 def fonts(figure) -> set[tuple[str, float]]:
     """Family and size of every text; of an axis of drifts those above."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     found = []
     for ax in figure.axes:
         found += [*ax.get_xticklabels(), *ax.get_yticklabels(), ax.xaxis.label, ax.yaxis.label]

@@ -178,6 +178,7 @@ def test_unit_of_a_loading_comes_before_those_of_the_case(tmp_path, case_text, u
     assert displacement[1] == 8 * UNITS["length"][unit or "cm"]
 
 
+@pytest.mark.usefixtures("without_figures")
 def test_figures_tables_and_reports_speak_other_units_in_a_block(tmp_path):
     push = rbsdem.pushover(rbsdem.examples.portal(), drift=0.02)
     kip, inch = UNITS["force"]["kip"], UNITS["length"]["in"]
