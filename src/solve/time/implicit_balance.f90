@@ -80,6 +80,10 @@ module rbs_solve_time_implicit_balance
    !> Steps that differ by a smaller share have one factor.
    real(wp), parameter :: equal_step = 1.0e-14_wp
 
+   !> Modal damping in a correction: most rounds, and the share of the largest force that may be lacking.
+   integer, parameter :: most_rounds = 8
+   real(wp), parameter :: found_force = 1.0e-10_wp
+
    type :: step_tangent
       !> Diagonal of the tangent (unknowns)
       real(wp), allocatable :: stiffness(:)
@@ -91,9 +95,10 @@ module rbs_solve_time_implicit_balance
       !> Step and lines that the factor belongs to
       real(wp), private :: factor_step = -1.0_wp, factor_resistance = 0.0_wp
       integer, private :: factor_version = -1, factor_damping = -1
-      !> What modal damping takes of a correction, per work of the correction on the momenta of each mode
-      !> (unknowns, modes)
-      real(wp), allocatable, private :: damped(:, :)
+      !> Of modal damping: force of a mode per motion that it lacks, in the elastic structure (modes), and its
+      !> factor in the tangent [1/s]
+      real(wp), allocatable, private :: of_mode(:)
+      real(wp), private :: damping_factor = 0.0_wp
       !> Whether an unknown without mass is held, as its pivot is round-off
       logical :: holds = .false.
    contains
@@ -484,25 +489,40 @@ contains
       dx = step%r
       call self%matrix%solve(dx, regular)
       associate (structure => state%motion%structure)
-         if (allocated(self%damped)) call apply_modal_damping(structure%massed, structure%modal_momenta)
+         if (allocated(self%of_mode)) call apply_modal_damping(structure%massed, structure%modal_momenta)
       end associate
 
    contains
 
-      !> Modal damping by Woodbury's formula: the tangent has it as products of momenta, which would fill the
-      !> band. The flexibility is that of the elastic structure, in which the modes are uncoupled; what
-      !> yielding changes of it, further trials correct.
+      !> Modal damping would fill the band. Its forces follow from the motions of the modes and these from the
+      !> forces: with the flexibility of the elastic structure, in which the modes are uncoupled, the first
+      !> round is exact, and a few rounds are where springs have yielded.
       subroutine apply_modal_damping(massed, momenta)
          !> Unknowns with mass
          integer, intent(in) :: massed(:)
          !> Momenta of the modes (unknowns with mass, modes)
          real(wp), intent(in) :: momenta(:, :)
-         real(wp) :: moved(size(massed))
-         integer :: j
+         real(wp) :: moved(size(massed)), force(size(momenta, 2)), lacking(size(momenta, 2)), rest
+         integer :: j, round
 
-         moved = dx(massed)
-         do j = 1, size(momenta, 2)
-            dx = dx - inner_product(size(moved), momenta(:, j), moved)*self%damped(:, j)
+         force = 0.0_wp
+         rest = huge(1.0_wp)
+         do round = 0, most_rounds
+            moved = dx(massed)
+            do j = 1, size(force)
+               lacking(j) = inner_product(size(moved), momenta(:, j), moved) - force(j)/self%damping_factor
+            end do
+            if (maxval(abs(lacking)) <= found_force*maxval(abs(force))/self%damping_factor) return
+            if (.not. maxval(abs(lacking)) < rest) return
+            rest = maxval(abs(lacking))
+            force = force + self%of_mode*lacking
+            moved = step%r(massed)
+            do j = 1, size(force)
+               moved = moved - force(j)*momenta(:, j)
+            end do
+            dx = step%r
+            dx(massed) = moved
+            call self%matrix%solve(dx, regular)
          end do
       end subroutine apply_modal_damping
 
@@ -534,28 +554,24 @@ contains
 
    contains
 
-      !> The columns of `apply_modal_damping`: the motions that the momenta of the modes, taken as forces,
-      !> cause in the elastic structure without damping, each divided as Woodbury's formula has it.
+      !> What `apply_modal_damping` needs of the elastic structure without damping.
       subroutine prepare_modal_damping(massed, momenta)
          integer, intent(in) :: massed(:)
          real(wp), intent(in) :: momenta(:, :)
-         !> Factor of the damping in the tangent of the step [1/s]
-         real(wp) :: damping_factor
+         real(wp) :: motion(size(step%r))
          logical :: regular
          integer :: j
 
-         damping_factor = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
+         self%damping_factor = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
          associate (structure => state%motion%structure)
             call set_tangent(structure%initial_stiffness, structure%initial_tangent)
          end associate
-         if (.not. allocated(self%damped)) allocate (self%damped(size(step%r), size(momenta, 2)))
-         self%damped(:, :) = 0.0_wp
-         self%damped(massed, :) = momenta
-         call self%matrix%solve(self%damped, regular)
+         if (.not. allocated(self%of_mode)) allocate (self%of_mode(size(momenta, 2)))
          do j = 1, size(momenta, 2)
-            associate (motion => self%damped(:, j))
-               motion = motion/(1.0_wp/damping_factor + sum(momenta(:, j)*motion(massed)))
-            end associate
+            motion = 0.0_wp
+            motion(massed) = momenta(:, j)
+            call self%matrix%solve(motion, regular)
+            self%of_mode(j) = 1.0_wp/(1.0_wp/self%damping_factor + sum(momenta(:, j)*motion(massed)))
          end do
       end subroutine prepare_modal_damping
 
