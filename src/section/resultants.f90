@@ -50,20 +50,29 @@ contains
       type(laws_type), intent(in) :: laws
       !> Strain at mid-depth, compression positive; [1/m]
       real(wp), intent(in) :: eps0, curvature
-      real(wp) :: stress, tangent, stress_core, tangent_core, strain, force, stiffness
-      integer :: i, cut
+      real(wp) :: stress, tangent, stress_core(2), tangent_core(2), strain, force, stiffness
+      integer :: i, cut, side
+      logical :: known(0:2)
 
       cut = cut_strip(section, laws, eps0, curvature)
+      known = .false.
       do i = 1, size(section%strips%y)
          if (i == cut) cycle
+         ! Without curvature all strips have one strain.
+         if (abs(curvature) > 0.0_wp) known = .false.
          strain = eps0 - curvature*section%strips%y(i)
-         call concrete_both(laws%shell, strain, stress, tangent)
+         if (.not. known(0)) call concrete_both(laws%shell, strain, stress, tangent)
+         known(0) = .true.
          force = stress*section%strips%area(i)
          stiffness = tangent*section%strips%area(i)
          if (laws%confined .and. section%strips%core_area(i) > 0.0_wp) then
-            call concrete_both(laws%core(side_of(section%strips%y(i))), strain, stress_core, tangent_core)
-            force = force + (stress_core - stress)*section%strips%core_area(i)
-            stiffness = stiffness + (tangent_core - tangent)*section%strips%core_area(i)
+            side = side_of(section%strips%y(i))
+            if (.not. known(side)) then
+               call concrete_both(laws%core(side), strain, stress_core(side), tangent_core(side))
+               known(side) = .true.
+            end if
+            force = force + (stress_core(side) - stress)*section%strips%core_area(i)
+            stiffness = stiffness + (tangent_core(side) - tangent)*section%strips%core_area(i)
          end if
          sums%n = sums%n + force
          sums%m = sums%m - force*section%strips%y(i)

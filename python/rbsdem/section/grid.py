@@ -379,12 +379,13 @@ class Grid:
                 {at: self.elastic.get(id(cell)) for at, cell in cells.items()}
                 for cells in (self.columns, self.beams)
             ]
-            arguments = {key: value for key, value in more.items() if key != "losses"}
+            # What does not change the axial loads is left out.
+            aside = ("losses", "kinematics", "panel", "damping", "pattern")
+            arguments = {key: value for key, value in more.items() if key not in aside}
             with notes_off():
                 parts = cls(
-                    self.storeys, self.bays or None, elastic[0], elastic[1] or None,
-                    **arguments | {"kinematics": "small", "panel": None, "damping": None},
-                ).parts  # fmt: skip
+                    self.storeys, self.bays or None, elastic[0], elastic[1] or None, **arguments
+                ).parts
             axial = dict(zip(parts.members, parts.compression.tolist(), strict=True))
         load = {
             at: self._rounded(self.columns[at], axial.get(Place("column", *at).name, 0.0))
