@@ -46,6 +46,7 @@ from rbsdem import peer
 from rbsdem.calibration.fit import Target
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.run.response import reached_force
+from rbsdem.run.rig import rig_force
 from rbsdem.section.parameters import ModelParameters, parameters, table
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -105,6 +106,7 @@ class Case:
             drawing = replace(self.column.drawing, parameters=given)
             column = replace(self.column, drawing=drawing, **drawing.made)
             force, _ = reached_force(column, self.target.displacement)
+            force = force + rig_force(column, self.target.displacement[: force.size])
         except RbsdemError:
             force = np.empty(0)
         whole = self.target.error(force)

@@ -43,7 +43,8 @@ def numbers(i: int) -> list[float]:
     """Return ratios of a test, model over test, then test over model, and over section theory."""
     case = fit_model._cases[i]
     d, test, column = case.target.displacement, case.target.force, spread_table._column(i, None)
-    force, height, load = path_force(column, d), case.specimen.length, case.specimen.axial_load
+    height, load = case.specimen.length, case.specimen.axial_load
+    force = path_force(column, d, rig=True)
     found = [
         secant_stiffness(d, force, level=x) / secant_stiffness(d, test, level=x) for x in LEVELS
     ]

@@ -278,7 +278,7 @@ def row(test: NewTest) -> Row:
     s, d = test.specimen, path(test)
     column = peer.column(s)
     section = column.drawing.section
-    band = peer.band(column, d, samples=8)
+    band = peer.band(column, d, samples=8, rig=True)
     force = band.force
     axial = axial_failure_drift(section, s.axial_load)
     return Row(

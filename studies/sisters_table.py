@@ -17,7 +17,7 @@ import numpy as np
 import spread_table
 
 from rbsdem import peer
-from rbsdem.run.bands import distance, numbers, path_force, scatter_of_tests
+from rbsdem.run.bands import distance, numbers, scatter_of_tests
 from rbsdem.run.sisters import Loop, Told, learn, told
 
 #: How many tests are given, the nearest first.
@@ -36,8 +36,9 @@ def _score(task: tuple[int, list[Told]]) -> tuple[float, ...]:
     case, column = fit_model._cases[number], spread_table._column(number, None)
     d, test = case.target.displacement, case.target.force
     learned = learn(column, d, given) if given else None
-    band = peer.band(column, d, samples=8, scatter=scatter_of_tests(), learned=learned)
-    error = case.target.error(path_force(column, d) if learned is None else learned.force(d))
+    known = scatter_of_tests()
+    band = peer.band(column, d, samples=8, scatter=known, learned=learned, rig=True)
+    error = case.target.error(band.force)
     measured = numbers(d, test, case.specimen.length)
     held = [
         interval.holds(measured[name])

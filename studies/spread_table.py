@@ -106,7 +106,7 @@ def _numbers(task: tuple[int, int | np.ndarray | None]) -> Numbers:
     case = fit_model._cases[number]
     d, test, height = case.target.displacement, case.target.force, case.specimen.length
     column = _column(number, judged)
-    force = path_force(column, d)
+    force = path_force(column, d, rig=True)
     ours, theirs = numbers(d, force, height), numbers(d, test, height)
     ours["stiffness"], theirs["stiffness"] = secant_stiffness(d, force), secant_stiffness(d, test)
     beyond = math.isnan(ours["drift"])
@@ -156,9 +156,9 @@ def _band(task: tuple[int, int | np.ndarray | None, int, Scatter]) -> Band:
     number, judged, samples, scatter = task
     case, column = fit_model._cases[number], _column(number, judged)
     d = case.target.displacement
-    force = path_force(column, d)
+    force = path_force(column, d, rig=True)
     peak = float(np.max(np.abs(force)))
-    up, down = half_band(force, sample(column, d, scatter, samples), scatter)
+    up, down = half_band(force, sample(column, d, scatter, samples, rig=True), scatter)
     at = PathPoints(d, POINTS, "displacement")
     return Band((at(case.target.force) - at(force)) / peak, at(up) / peak, at(down) / peak)
 

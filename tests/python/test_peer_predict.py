@@ -19,6 +19,7 @@ from rbsdem import peer
 from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.output import measured
+from rbsdem.run.rig import rig_force
 from rbsdem.springs import Bilinear, Takeda
 
 PATIENCE = 60.0
@@ -69,7 +70,7 @@ def run(*arguments: object) -> int:
 
 
 def test_scores_of_a_model_that_is_a_factor_off(table):
-    found = peer.predict(table, good)
+    found = peer.predict(table, good, rig=False)
     assert [row.status for row in found] == 5 * ["completed"] + ["no history"]
     for i, row in enumerate(found[:5], 1):
         assert row.score("peak_ratio") == pytest.approx(1 / (1 + i / 10), rel=1e-6)
@@ -81,6 +82,35 @@ def test_scores_of_a_model_that_is_a_factor_off(table):
     for name in ("force", "displacement"):
         loop = rbsdem.cyclic(good(table[0]), displacement=table[0].test().displacement)
         np.testing.assert_array_equal(getattr(found[0], name), getattr(loop, name))
+
+
+def test_the_rig_of_a_test_adds_its_friction(table):
+    """In closed form; in predictions, and in no column."""
+    test = table[0]
+    column = peer.column(test)
+    turn, most = 0.0005 * test.length, 0.004 * test.axial_load
+    path = turn * np.array([0.0, 0.5, 1.0, 8.0, 7.5, 6.0, -3.0, -2.5, 0.0])
+    of_rig = most * np.array([0.0, 0.5, 1.0, 1.0, 0.5, -1.0, -1.0, -0.5, 1.0])
+    np.testing.assert_allclose(rig_force(column, path), of_rig, rtol=1e-12)
+    alone = rbsdem.cyclic(column, displacement=path).force
+    found = peer.predict(test, displacement=path, bands=True, samples=8)
+    np.testing.assert_array_equal(found.force, alone + rig_force(column, path))
+    np.testing.assert_array_equal(found.band.force, found.force)
+    np.testing.assert_array_equal(peer.band(column, path, samples=8).force, alone)
+    without = peer.predict(test, displacement=path, rig=False, bands=True, samples=8)
+    np.testing.assert_array_equal(without.force, alone)
+    np.testing.assert_array_equal(without.band.force, alone)
+    own = column.drawing.parameters.with_values(rig_friction=0.006)
+    made = peer.column(test, model_parameters=own)
+    np.testing.assert_allclose(rig_force(made, path), 1.5 * of_rig, rtol=1e-12)
+    np.testing.assert_allclose(rig_force(good(test), path), of_rig, rtol=1e-12)
+    whole = rbsdem.section.column(
+        column.drawing.section, 2 * test.length, axial_load=test.axial_load, top="fixed"
+    )
+    np.testing.assert_allclose(rig_force(whole, 2 * path), of_rig, rtol=1e-12)
+    assert not np.any(rig_force(peer.column(replace(test, axial_load=0.0)), path))
+    with pytest.raises(InputError, match="leave out given"):
+        peer.predict(test, given=[test], rig=False)
 
 
 def test_what_goes_wrong_is_a_row(table):
@@ -175,7 +205,7 @@ def test_file_of_a_table_stays_in_its_folder(tmp_path, file):
 
 
 def test_summary_by_groups(table):
-    found = peer.predict(table, good, limit_states=True)
+    found = peer.predict(table, good, limit_states=True, rig=False)
     groups = peer.score_summary(found)
     assert dict(groups["tests"]) == {"Flexure": 3, "Shear": 2, "all": 5}
     flexure = groups.loc["Flexure"]

@@ -235,7 +235,7 @@ def test_displacement_measured_below_the_top(tmp_path, measured_mm):
         [{"Lmeas_mm": f"{measured_mm}", "L_mm": "2000", "pdelta_code": "3", "Ltop_mm": "250"}],
     )
     top = cycles(specimen, 0.005, 0.01, 0.02)
-    net = rbsdem.cyclic(peer.column(specimen, "layered"), displacement=top).force
+    net = peer.predict(specimen, "layered", displacement=top).force
     # Code 3: the hinge of the ram at L + L_top, its other end at the foot.
     force = net + 1.2e6 * np.sin(np.arctan(top / 2.0))
     write_history(tmp_path / "a.csv", top * measured_mm / 2000, force)

@@ -14,12 +14,13 @@ from rbsdem import peer
 from rbsdem.errors import InputError
 from rbsdem.run.bands import distance, features_of, path_force, scatter_of_tests
 from rbsdem.run.protocol import protocol
+from rbsdem.run.rig import friction
 from rbsdem.run.sisters import Loop, Told, learn, told
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 PATH = 1.6 * protocol([0.005, 0.015, 0.03], cycles=1)
 COLUMN = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
-FORCE = path_force(COLUMN, PATH)
+FORCE = path_force(COLUMN, PATH, rig=True)
 
 
 def says(force: np.ndarray) -> Told:
@@ -35,7 +36,7 @@ def test_a_test_that_the_model_follows_moves_nothing() -> None:
 
 def test_what_the_rig_adds_is_found() -> None:
     """The loop is; of its causes friction, as strength may stand for second-order force."""
-    rig = 0.05 * np.sign(np.gradient(PATH)) * np.abs(FORCE).max() + 0.3 * 1.2e6 / 1.6 * PATH
+    rig = 0.05 * friction(PATH, 1.6) * np.abs(FORCE).max() + 0.3 * 1.2e6 / 1.6 * PATH
     found = learn(COLUMN, PATH, [says(FORCE + rig)] * 3)
     assert found.friction == pytest.approx(0.05, rel=0.2)
     assert found.second_order > 0.1
@@ -64,7 +65,7 @@ def test_one_number_in_closed_form() -> None:
 
 def test_the_band_moves_and_narrows() -> None:
     learned = learn(COLUMN, PATH, [says(1.1 * FORCE)] * 3)
-    before = peer.band(COLUMN, PATH, samples=8)
+    before = peer.band(COLUMN, PATH, samples=8, rig=True)
     after = peer.band(COLUMN, PATH, samples=8, learned=learned)
     np.testing.assert_allclose(after.force, learned.force(PATH))
     assert after.width < before.width
@@ -76,7 +77,7 @@ def test_the_band_moves_and_narrows() -> None:
 def test_predictions_with_given_tests(tmp_path) -> None:
     (known,) = write_table(tmp_path, [{"file": "a.csv"}])
     path = known.length * protocol([0.005, 0.01, 0.02], cycles=1)
-    force = 1.15 * rbsdem.cyclic(peer.column(known), displacement=path).force
+    force = 1.15 * peer.predict(known, displacement=path).force
     write_history(tmp_path / "a.csv", path, force)
     new = replace(known, name="a sister", concrete_strength=1.1 * known.concrete_strength)
     alone = peer.predict(new)

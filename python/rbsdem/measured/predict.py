@@ -39,6 +39,7 @@ from rbsdem.run.bands import (
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.response import cyclic
+from rbsdem.run.rig import rig_force
 from rbsdem.run.sisters import Loop, Told, learn, told
 from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.criteria import WATCHED
@@ -184,12 +185,13 @@ def predict(
     near: Tests = (),
     given: Iterable[Specimen] = (),
     limit_states: bool = False,
+    rig: bool = True,
     **options: Any,
 ) -> Prediction | list[Prediction]:
     """Predict tests from their properties, and compare with what was measured.
 
-    Each column is driven through the measured displacements; its lateral force is compared with the
-    net horizontal force of the test.
+    Each column is driven through the measured displacements; its lateral force, with the friction
+    of the rig, is compared with the net horizontal force of the test.
 
     Parameters
     ----------
@@ -216,6 +218,9 @@ def predict(
     limit_states : bool, optional
         With the drifts at which limit states are reached, see `rbsdem.Result.limit_states`; not
         with `given`.
+    rig : bool, optional
+        With the friction of the rig of a test (`rbsdem.run.rig.rig_force`); False gives the force
+        of the column alone, and not with `given`.
     **options
         Passed to `rbsdem.peer.column`, such as ``n=4``.
 
@@ -245,6 +250,8 @@ def predict(
         raise InputError(f"given: tests move predictions of 'layered' alone, not of {name!r}")
     if sisters and limit_states:
         raise InputError("limit_states = True: they are those of the drawing; leave out given")
+    if not _arguments.boolean(rig, "rig") and sisters:
+        raise InputError("rig = False: tests tell of column and rig together; leave out given")
     says = {sister: _told(sister, options) for sister in sisters}
     path = None if displacement is None else _path(displacement)
     others: Sequence[Specimen | Prediction]
@@ -252,7 +259,7 @@ def predict(
     known: dict[Specimen, Prediction] = {}
 
     def one(specimen: Specimen) -> Prediction:
-        row = _row(checked_specimen(specimen), model, name, path, limit_states, options)
+        row = _row(checked_specimen(specimen), model, name, path, limit_states, rig, options)
         column = row[1]
         if column is None or row[0].status == "failed":
             return row[0]
@@ -264,10 +271,10 @@ def predict(
         if bands:
             with unwarned():
                 changes["band"] = band_of(
-                    column, row[0].displacement, samples=samples, learned=learned
+                    column, row[0].displacement, samples=samples, learned=learned, rig=rig
                 )
         if others:
-            changes["nearest"] = _neighbours(specimen, others, known, model, options)
+            changes["nearest"] = _neighbours(specimen, others, known, model, options | {"rig": rig})
         return replace(row[0], **changes)
 
     if isinstance(specimens, Specimen):
@@ -321,6 +328,7 @@ def _row(
     name: str,
     path: Array | None,
     limit_states: bool,
+    rig: bool,
     options: dict[str, Any],
 ) -> tuple[Prediction, Any]:
     """Return the row of a test, and its column; an error is a row."""
@@ -334,7 +342,7 @@ def _row(
     except RbsdemError as error:
         return replace(row, status="no history", error=str(error)), None
     assert path is not None
-    force = np.full(path.size, np.nan)
+    force, moved = np.full(path.size, np.nan), path
     outcome: dict[str, Any] = {}
     begin = time.perf_counter()
     with recorded() as caught:
@@ -351,14 +359,17 @@ def _row(
             kind = "" if isinstance(fault, RbsdemError) else f"{type(fault).__name__}: "
             outcome, result = {"status": "failed", "error": f"{kind}{fault}"}, None
         if isinstance(result, ColumnResult):
-            force[: result.force.size] = result.force
+            moved, rows = result.displacement, result.displacement.size
+            force[:rows] = result.force
+            if rig:
+                force[:rows] += rig_force(result.column, moved)
             if limit_states:
                 outcome["limit_states"] = {s.name: abs(s.drift) for s in result.limit_states()}
     row = replace(
         row, displacement=path, force=force, seconds=time.perf_counter() - begin, **outcome
     )
     if test is not None:
-        comparison = compare((path, force) if result is None else result, test)
+        comparison = compare((moved, force[: moved.size]), test)
         row = replace(row, comparison=comparison)
         if row.status == "completed" and comparison.path_fraction < 1:
             row = replace(row, status="stopped", error=f"the forces end at row {comparison.rows}")

@@ -31,6 +31,7 @@ from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.run.response import reached_force
+from rbsdem.run.rig import friction, rig_force
 from rbsdem.section.curvature import RANGE
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION
@@ -131,7 +132,7 @@ class Learned:
     strength : float
         Factor of its force.
     friction : float
-        Force against the motion of the top, over the largest force.
+        Force against the motion of the top beyond the friction of rigs, over the largest force.
     second_order : float
         Force in proportion to the displacement, over P/L: axial load over height.
     left : float
@@ -153,7 +154,7 @@ class Learned:
         displacement : ndarray, shape (m,)
             The path [m].
         """
-        force = self.strength * path_force(self.column, displacement)
+        force = self.strength * path_force(self.column, displacement, rig=True)
         by_friction, by_load = forces_of_rig(self.column, displacement, force)
         return np.asarray(force + self.friction * by_friction + self.second_order * by_load)
 
@@ -347,6 +348,7 @@ def band(
     samples: int = 16,
     scatter: Scatter | None = None,
     learned: Learned | None = None,
+    rig: bool = False,
 ) -> Band:
     """Predict the force along a path, with the band that holds 80 % of left-out tests.
 
@@ -363,6 +365,9 @@ def band(
         Another scatter than that of the version.
     learned : Learned, optional
         What tests of the laboratory say, by which prediction and band move and the band narrows.
+    rig : bool, optional
+        With the friction of the rig of a test (`rbsdem.run.rig.rig_force`), as in
+        `rbsdem.peer.predict`, and whatever is `learned`; by default the force is the column's.
 
     Returns
     -------
@@ -403,7 +408,9 @@ def band(
     if warnings:
         warn(f"band: {'; '.join(warnings)}")
     base = column if learned is None else learned.column
-    force, sampled, left = path_force(base, d), sample(base, d, scatter, number), 1.0
+    rig = _arguments.boolean(rig, "rig") or learned is not None
+    force, left = path_force(base, d, rig=rig), 1.0
+    sampled = sample(base, d, scatter, number, rig=rig)
     if learned is not None:
         sampled -= force
         force, left = learned.force(d), learned.left
@@ -450,6 +457,8 @@ def sample(
     displacement: Array,
     scatter: Scatter,
     number: int,
+    *,
+    rig: bool = False,
 ) -> Array:
     """Return the forces of samples of strength, stiffness and degradation, shape (number, m) [N].
 
@@ -463,6 +472,8 @@ def sample(
         Of a new laboratory: both standard deviations are in it.
     number : int
         How many.
+    rig : bool, optional
+        With the friction of the rig of a test.
     """
     drawing = column._drawing
     for name, made in drawing.fields_for(column.top).items():
@@ -476,7 +487,8 @@ def sample(
     for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
         strength, stiffness, degradation = np.exp(np.array(sizes) * np.array(point)).tolist()
         # A column that is softer by a factor is where the other is at a smaller displacement.
-        row[:] = strength * path_force(_degraded(column, degradation), displacement * stiffness)
+        changed, path = _degraded(column, degradation), displacement * stiffness
+        row[:] = strength * path_force(changed, path, rig=rig)
     return rows
 
 
@@ -621,14 +633,26 @@ def forces_of_rig(column: LayeredColumn, displacement: Array, force: Array) -> t
     displacement, force : ndarray, shape (m,)
         The path [m], and the force of the column along it [N].
     """
-    way = np.sign(np.gradient(displacement))
+    way = friction(displacement, column.height)
     return way * np.max(np.abs(force)), column.axial_load / column.height * displacement
 
 
-def path_force(column: Column, displacement: Array) -> Array:
-    """Return the lateral force along a path; zero behind the end of the analysis."""
+def path_force(column: Column, displacement: Array, *, rig: bool = False) -> Array:
+    """Return the lateral force along a path; zero behind the end of the analysis.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    displacement : ndarray, shape (m,)
+        The path [m].
+    rig : bool, optional
+        With the friction of the rig of a test.
+    """
     force = np.zeros(displacement.size)
     with unwarned():
         found, _ = reached_force(column, displacement)
+    if rig:
+        found = found + rig_force(column, displacement[: found.size])
     force[: found.size] = found
     return force

@@ -2,11 +2,11 @@
 
 Tests of one series (sisters) share a laboratory: its steel, its concrete, its rig. What may differ
 from the model is the strength, the fitted numbers of the model, and two things of the rig: a force
-against the motion, which makes loops wider, and the share of the axial load's second-order force
-that the record has or lacks. Half of the variance of each is the laboratory's; the other half two
-columns have in common the more, the more alike they are. Each given test is followed along its
-path; linear in all of these, they give the posterior mean for another column, and what is left of
-the scatter makes its band narrower.
+against the motion beyond the friction of rigs, which makes loops wider, and the share of the axial
+load's second-order force that the record has or lacks. Half of the variance of each is the
+laboratory's; the other half two columns have in common the more, the more alike they are. Each
+given test is followed along its path; linear in all of these, they give the posterior mean for
+another column, and what is left of the scatter makes its band narrower.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> 
     known = np.column_stack([pull, information @ with_column.T])
     known = with_column @ np.linalg.solve(np.eye(len(prior)) + information @ prior, known)
     places = np.clip(known[:, 0], -_FARTHEST * sizes, _FARTHEST * sizes).tolist()
-    force = path_force(column, displacement)
+    force = path_force(column, displacement, rig=True)
     slopes = _slopes(column, displacement, force)
     about = slopes.T @ (_lengths(displacement)[:, None] * slopes)
     before = float(np.trace(about @ variance)) + (_SHAPE * float(np.max(np.abs(force)))) ** 2
@@ -132,7 +132,7 @@ def told(loop: Loop) -> Told:
         The test.
     """
     column, d, scale = loop.column, loop.displacement, float(np.max(np.abs(loop.force)))
-    force = path_force(column, d)
+    force = path_force(column, d, rig=True)
     slopes = _slopes(column, d, force)
     weighted = slopes.T * (_lengths(d) / (scale * _ERROR) ** 2)
     return Told(_features(column), weighted @ slopes, weighted @ (loop.force - force))
@@ -151,7 +151,7 @@ def _sizes() -> Array:
 def _slopes(column: LayeredColumn, displacement: Array, force: Array) -> Array:
     """Return the changes of the force along a path by each of them, shape (m, k)."""
     unit = _STEP * np.eye(len(_fitted()))
-    moved = [path_force(_moved(column, places), displacement) for places in unit.tolist()]
+    moved = [path_force(_moved(column, places), displacement, rig=True) for places in unit.tolist()]
     by_numbers = [(other - force) / _STEP for other in moved]
     return np.column_stack([force, *by_numbers, *forces_of_rig(column, displacement, force)])
 
