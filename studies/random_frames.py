@@ -10,6 +10,8 @@ KIND is a relation of `tests/python/test_invariants_frames.py` or a set of work:
 - `records`: undamped records, of which the energy that snaps of springs put in is compared;
 - `relations`: all relations;
 - `pushes`: push-overs to a drift of 5 %, which get there or end with a message that names a member;
+- `leaps`: pushes to a drift of 3 % and cycles to 1 and 2 % by `method="newton"`, whose errors and
+  times are compared with those of paths from event to event;
 - `kernels`: rows of cycles, for another kernel of OpenBLAS: run it with `--write FILE`, then with
   another value of OPENBLAS_CORETYPE and `--against FILE`.
 
@@ -27,10 +29,12 @@ import re
 import resource
 import signal
 import sys
+import time
 import warnings
 import zlib
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +51,7 @@ SETS = {
     "records": ("test_snaps_set_energy_free",),
     "relations": (),
     "pushes": (),
+    "leaps": (),
     "kernels": (),
 }  # fmt: skip
 
@@ -69,7 +74,7 @@ os.environ |= {"RBSDEM_SEED": str(ASKED.seed), "RBSDEM_STOREYS": "6"}
 
 import test_invariants_frames  # noqa: E402, F401
 from relations import RELATIONS, Discard, ended, replay  # noqa: E402
-from strategies_frames import FAMILIES, building, drifts, frame  # noqa: E402
+from strategies_frames import FAMILIES, building, drifts, frame, plan  # noqa: E402
 
 import rbsdem  # noqa: E402
 
@@ -164,6 +169,63 @@ def pushed(family: str, cases: range) -> None:
         print(f"{len(which):6d}  {text}  {few}", flush=True)
 
 
+def leapt(family: str, cases: range, points: int, *, cycles: bool) -> None:
+    """Print errors by leaps, of forces and of rotations of joints over their peaks, and times."""
+    drawings: dict[str, Callable[[np.random.Generator], Any]] = {
+        "buildings": building,
+        "plans": plan,
+    }
+    make = drawings.get(family, lambda rng: frame(rng, family))
+    to = np.arange(1, points + 1) / points * 0.03
+    if cycles:
+        turns = np.array([0.0, 0.01, -0.01, 0.02]) * points
+        to = np.interp(
+            np.arange(1, points + 1),
+            np.cumsum(np.abs(np.diff(turns, prepend=0.0))) / 0.06,
+            turns / points,
+        )
+
+    def compare(case: int) -> tuple[float, float, float, float, bool]:
+        made, paths, times = make(random_of(family, case)), [], []
+        rbsdem.cyclic(made, displacement=[made.height * 1e-5])  # it is made
+        for method in ("static", "newton"):
+            run = partial(rbsdem.cyclic, made, displacement=made.height * to, method=method)
+            begun = time.process_time()
+            paths.append(ended(run))
+            times.append(time.process_time() - begun)
+        exact, leaps = (path.channels for path in paths)
+        n = min(len(exact["force"]), len(leaps["force"]))
+        if not n:
+            raise Discard
+        apart = [
+            np.abs(exact[name][:n] - leaps[name][:n]).max() / np.abs(exact[name]).max()
+            for name in ("force", "rotation" if "rotation" in exact else "force")
+        ]
+        return *apart, *times, len(exact["force"]) != len(leaps["force"])
+
+    found, late = [], 0
+    for case in cases:
+        try:
+            one = capped(compare, case)
+            if isinstance(one, str):
+                print(f"      case {case}: {one[:200]}")
+            else:
+                found.append(one)
+        except Discard:
+            continue
+        except Late:
+            late += 1
+    force, rotation, by_events, by_leaps, unlike = np.array(found).T
+    print(
+        f"{family:10} {points:4} points, {'cycles' if cycles else 'push'}: {len(found)} judged, "
+        f"force {np.median(force):.0e} in the median, {np.quantile(force, 0.95):.0e} in 95 %, "
+        f"{force.max():.0e} at most, rotations {rotation.max():.0e}; "
+        f"above 1e-3 {(force > 1e-3).sum()}; time {by_leaps.sum() / by_events.sum():.2f}; "
+        f"other ends {unlike.sum():.0f}, late {late}",
+        flush=True,
+    )
+
+
 def rows(family: str, cases: range) -> list[list[float] | str]:
     """Return the forces of cyclic paths in shares of the largest, or how a case failed."""
 
@@ -202,6 +264,12 @@ def main() -> None:
         if kind == "pushes":
             for family in FAMILIES:
                 pushed(family, cases)
+        elif kind == "leaps":
+            for family in (*FAMILIES, "buildings", "plans"):
+                leapt(family, cases, 100, cycles=False)
+                leapt(family, cases, 100, cycles=True)
+            for points in (25, 50, 200, 400):
+                leapt("buildings", cases, points, cycles=False)
         elif kind == "kernels":
             values = {family: rows(family, cases) for family in (*FAMILIES, "buildings")}
             if ASKED.write:

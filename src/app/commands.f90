@@ -98,7 +98,7 @@ contains
          type(initial_state) :: at_rest
          character(len=:), allocatable :: note
 
-         plan%method = 'static'
+         plan%method = run%case%analysis%method
          associate (case => run%case, structure => run%structure, history => run%history, &
                     recorder => run%recorder, task => run%task)
             if (allocated(case%analysis%initial)) then
@@ -140,6 +140,7 @@ contains
                call run_dynamic(structure, case%analysis, plan, history%time, history%loads, at_rest, task, &
                                 error)
             else
+               task%leaps = case%analysis%method == 'newton'
                call run_static(structure, any(case%loading(:case%loadings)%drive == 'force'), &
                                history%target, task, error, history%axial_load)
             end if

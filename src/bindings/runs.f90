@@ -141,9 +141,10 @@ contains
          type(error_type), allocatable, intent(out) :: error
          real(c_double), pointer, contiguous :: target(:)
 
-         run%case%analysis%method = 'static'
+         if (run%case%analysis%method == '') run%case%analysis%method = 'static'
          call check_settings(run%case, error)
          if (allocated(error)) return
+         run%task%leaps = run%case%analysis%method == 'newton'
          target => request%array('target')
          run%recorder%corners = request%wants('corners')
          run%recorder%expected = kept_rows(size(target), run%case%output%every)
@@ -216,7 +217,7 @@ contains
 
       call case%analysis%validate(messages)
       call case%output%check('output', messages)
-      if (case%analysis%method == 'static') call case%check_static(messages)
+      if (case%analysis%known() .and. .not. case%analysis%dynamic()) call case%check_static(messages)
       call messages%raise(error)
    end subroutine check_settings
 
@@ -226,9 +227,9 @@ contains
       type(loads_type), intent(in) :: loads
       type(error_type), allocatable, intent(out) :: error
 
-      if (case%analysis%method == 'static') then
-         call fatal_error(error, bad_input, "analysis: method = 'static' takes no time; call cyclic, or "// &
-                          "set method = 'auto'")
+      if (case%analysis%known() .and. .not. case%analysis%dynamic()) then
+         call fatal_error(error, bad_input, "analysis: method = '"//trim(case%analysis%method)// &
+                          "' takes no time; call cyclic, or set method = 'auto'")
       else if (case%analysis%method == '' .and. loads%signal(lateral)%acts() .and. .not. &
                (loads%signal(horizontal)%acts() .or. loads%signal(vertical)%acts())) then
          call fatal_error(error, bad_input, 'analysis: a force with time needs a method that is named: '// &

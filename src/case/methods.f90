@@ -45,8 +45,9 @@ module rbs_case_methods
    !> The pair 5(4) of rk45 is stable for undamped motion up to h omega = 0.9968, rk4 up to 2 sqrt(2): 0.3524
    !> of the limit of rk4. With longer steps the stiffest mode would grow until its error exceeds the
    !> tolerance, and the springs would follow this false motion.
-   type(method_type), parameter :: methods(7) = [ &
+   type(method_type), parameter :: methods(8) = [ &
       method_type('static', in_time=.false., dt=.false.), &
+      method_type('newton', in_time=.false., dt=.false.), &
       method_type('auto', tolerance=.true.), &
       method_type('rk4', order=4, explicit=.true., events=.true., allow_unstable=.true., &
                   limit_share=0.2_wp, usual_error=1.0e-4_wp, largest_error=3.0e-3_wp, &
@@ -80,7 +81,7 @@ contains
    end function method_named
 
    !> The names of all methods, separated by blanks.
-   pure character(len=112) function method_choices() result(names)
+   pure character(len=120) function method_choices() result(names)
       integer :: i
 
       names = methods(1)%name

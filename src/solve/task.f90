@@ -21,6 +21,8 @@ module rbs_solve_task
       class(observer_type), pointer :: progress => null()
       !> Every n-th point is kept, and the last; `unset_integer`: all
       integer :: every = unset_integer
+      !> Whether a static path leaps from target to target, by Newton's method
+      logical :: leaps = .false.
       !> Drift of a storey, or of the top, at which the run ends as collapsed; `unset`: it does not
       real(wp) :: collapse_drift = unset
       !> The word by which another thread ends the run, where it is not 0 (null: none)

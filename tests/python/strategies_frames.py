@@ -87,8 +87,8 @@ def frame(rng: Rng, family: str = "mixed", **fixed: Any) -> Frame:
     raise AssertionError(f"no frame of 200 was accepted: {family}, {fixed}")
 
 
-def building(rng: Rng) -> Frame:
-    """Return a frame of storeys up to the tallest and 1 to 3 bays from the drawings of members."""
+def _drawn(rng: Rng) -> tuple[rbsdem.RectangularSection, rbsdem.RectangularSection]:
+    """Return the drawings of columns and beams."""
     bars, hoops = rbsdem.Steel(between(rng, 350e6, 550e6), 600e6), rbsdem.Steel(400e6)
     more: dict[str, Any] = {"ties": rbsdem.Ties(0.008, float(rng.choice([0.1, 0.15, 0.2])), hoops)}
     more["cover"] = 0.03
@@ -99,12 +99,31 @@ def building(rng: Rng) -> Frame:
     below, above = (float(rng.choice([5e-4, 6e-4, 10e-4])), bars), (10e-4, bars)
     rows = [(0.05 - depth / 2, *below), (depth / 2 - 0.05, *above)]
     beam = rbsdem.RectangularSection(0.3, depth, concrete, bars=rows, bar_diameter=0.018, **more)
+    return column, beam
+
+
+def building(rng: Rng) -> Frame:
+    """Return a frame of storeys up to the tallest and 1 to 3 bays from the drawings of members."""
+    column, beam = _drawn(rng)
     storeys, bays = int(rng.integers(1, TALLEST + 1)), int(rng.integers(1, 4))
     return Frame.grid(
         [float(rng.choice([3.0, 3.2, 3.5]))] * storeys, [float(rng.choice([4.0, 5.0, 6.0]))] * bays,
         columns=column, beams=beam, beam_load=float(rng.choice([8e3, 12e3, 18e3])),
         kinematics=str(rng.choice(["small", "pdelta"])), base=str(rng.choice(["fixed", "pinned"])),
         floor_mass=3e4,
+    )  # fmt: skip
+
+
+def plan(rng: Rng) -> rbsdem.Building:
+    """Return a drawn building in plan of 1 or 2 storeys, eccentric and pushed in any direction."""
+    column, beam = _drawn(rng)
+    bays = [[float(rng.choice([4.0, 5.0, 6.0]))] * int(rng.integers(1, 3)) for _ in "xy"]
+    return rbsdem.Building.grid(
+        [3.2] * int(rng.integers(1, 3)), *bays, columns=column, beams_x=beam, beams_y=beam,
+        floor_load=float(rng.choice([4e3, 6e3])), mass="from_loads",
+        eccentricity=(rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1)),
+        direction=float(rng.choice([0.0, 30.0, 90.0, 200.0])),
+        kinematics=str(rng.choice(["small", "pdelta"])),
     )  # fmt: skip
 
 

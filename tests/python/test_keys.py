@@ -24,6 +24,7 @@ from rbsdem.model.column import Damping
 from rbsdem.model.springs import SPRINGS
 from rbsdem.run.case import Case
 from rbsdem.run.groups import SHAPES
+from rbsdem.run.solver import IN_TIME, STATIC
 from rbsdem.springs import Elastic, Layered
 
 KEYS = _core.keys()
@@ -140,8 +141,9 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
         default = known[name].default
         assert default == (False if settings[name]["kind"] == "logical" else None), name
     assert words(hints["events"]) == set(settings["events"]["choices"])
-    assert words(hints["method"]) == set(settings["method"]["choices"]) - {"static"}
-    assert set(rbsdem.run.solver.IN_TIME) == words(hints["method"])
+    assert words(hints["method"]) == set(settings["method"]["choices"]) - set(STATIC)
+    assert words(get_type_hints(rbsdem.cyclic)["method"]) == set(STATIC)
+    assert set(IN_TIME) == words(hints["method"])
 
 
 def test_drives_of_a_case_are_the_loads_of_python():

@@ -11,7 +11,7 @@ import pytest
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS
+from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS, STATIC
 from rbsdem.springs import Bilinear, Elastic, Takeda
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,7 +38,7 @@ def test_the_docs_have_the_table_of_the_program() -> None:
 
 
 def test_names_in_time() -> None:
-    assert set(METHODS) == {"static", *IN_TIME}
+    assert set(METHODS) == {*STATIC, *IN_TIME}
     assert set(IMPLICIT) == {"newmark", "hht", "generalised_alpha"}
 
 

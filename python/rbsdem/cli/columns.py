@@ -212,7 +212,7 @@ def trade(
     loads: dict[str, Any] = dict(model.loads)
     study = compare_methods(
         model.column,
-        time=None if model.method == "static" else model.time,
+        time=model.time if model.dynamic else None,
         **loads,
         collapse_drift=model.settings.get("collapse_drift"),
         methods=methods.split(",") if methods else None,
@@ -335,9 +335,9 @@ def ensemble(
     130 interrupted by the keyboard (finished runs are kept).
     """
     model = read_case(case)
-    if model.method == "static":
+    if not model.dynamic:
         raise InputError(
-            f"{case}: method = 'static' takes no records; give a method in time, as 'auto'"
+            f"{case}: method = '{model.method}' takes no records; give a method in time, as 'auto'"
         )
     (rows,) = claim_folder(out, ["runs.csv"])
     runs = run_ensemble(

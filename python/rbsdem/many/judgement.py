@@ -82,7 +82,7 @@ def checked(case: Case) -> tuple[DesignSpectrum | None, list[str]]:
     faults: list[str] = []
     if asked(case) and not isinstance(case.column, Frame):
         faults.append("target, assess: they are for frames; remove them from the case of a column")
-    if case.target and (case.method != "static" or case.displacement is None):
+    if case.target and (case.dynamic or case.displacement is None):
         faults.append(
             "target: it is that of a push-over; give drive = 'displacement' without times"
         )
@@ -137,8 +137,12 @@ def response(case: Case, **settings: Any) -> FrameResult | BuildingResult:
     """
     path = case.displacement
     result: Any
-    if case.method == "static" and path is not None:
-        result = pushover(case.column, displacement=float(path[np.abs(path).argmax()]))
+    if not case.dynamic and path is not None:
+        far = float(path[np.abs(path).argmax()])
+        # A case file need not name the method: the default of a push-over is its structure's.
+        result = pushover(
+            case.column, displacement=far, method="newton" if case.method == "newton" else None
+        )
     else:
         result = case.run(**settings)
     return cast(FrameResult | BuildingResult, result)

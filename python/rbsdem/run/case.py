@@ -33,7 +33,7 @@ from rbsdem.run.groups import (
 )
 from rbsdem.run.response import cyclic, time_history
 from rbsdem.run.rows import FORMAT, FORMAT_VERSION, SAVED, Result, check_ending, same
-from rbsdem.run.solver import Solver
+from rbsdem.run.solver import STATIC, Solver
 from rbsdem.section.frame import Frame, Structure
 from rbsdem.section.plan import Building
 
@@ -56,7 +56,7 @@ class Case:
     column : Column or Frame
         The structure.
     method : str
-        "static", or a method of `time_history`.
+        "static" or "newton", or a method of `time_history`.
     time : ndarray, shape (m,)
         Times of all loadings [s]; in a static analysis the numbers of the points. Empty for a case
         without a loading.
@@ -98,9 +98,14 @@ class Case:
     ground_acceleration_y: Array | None = None
 
     @property
+    def dynamic(self) -> bool:
+        """Whether the analysis is one in time."""
+        return self.method not in STATIC
+
+    @property
     def solver(self) -> Solver:
         """The method in time and its settings that were given; nothing for a static case."""
-        if self.method == "static":
+        if not self.dynamic:
             return Solver()
         settings = {"method": self.method} | self.settings
         return cast(
@@ -138,13 +143,12 @@ class Case:
             )
         keywords: dict[str, Any] = self.loads | self.settings
         try:
-            if self.method == "static":
-                result: ColumnResult | FrameResult | BuildingResult = cyclic(
-                    column, **(keywords | changes)
-                )
+            keywords["method"] = self.method
+            result: ColumnResult | FrameResult | BuildingResult
+            if self.dynamic:
+                result = time_history(column, **(keywords | {"time": self.time} | changes))
             else:
-                keywords |= {"time": self.time, "method": self.method}
-                result = time_history(column, **(keywords | changes))
+                result = cyclic(column, **(keywords | changes))
         except SolveError as error:
             if error.result is not None:
                 error.result = replace(error.result, case=self)
@@ -172,7 +176,7 @@ class Case:
         head = {"title": _core.Text(self.title) if self.title else None}
         structure = self.column._statement if springs else self.column._groups()
         parts = [_core.group("case", head), structure]
-        time = None if self.method == "static" else self.time
+        time = self.time if self.dynamic else None
         for name, values in self.loads.items():
             parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
         settings = dict(self.settings)
@@ -341,7 +345,7 @@ def case_of(result: Result) -> Case:
     settings = {name: value for name, value in result.call.items() if name not in _NO_SETTINGS}
     loads = {name: settings.pop(name, None) for name in _DRIVES}
     size = next(values.size for values in loads.values() if values is not None)
-    method = settings.pop("method", "auto") if result.dynamic else "static"
+    method = settings.pop("method", "auto" if result.dynamic else "static")
     time = settings.pop("time", np.arange(float(size)))
     return Case("", result.structure, method, time, **loads, settings=settings)
 

@@ -57,6 +57,7 @@ def follow(
         openings,
         collapse_drift=call.get("collapse_drift"),
         max_seconds=call.get("max_seconds"),
+        method=call.get("method"),
     )
     initial = call.get("initial")
     state = None if initial is None else state_of(initial, "cyclic")

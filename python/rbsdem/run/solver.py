@@ -9,6 +9,7 @@ from typing import Any, Literal, TypedDict
 from rbsdem import _arguments, _core
 
 #: Names of the methods in time.
+PathMethod = Literal["static", "newton"]
 MethodName = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
 
 
@@ -133,6 +134,7 @@ METHODS = {
 #: of a column the displacement of the top over the height.
 COLLAPSE_DRIFT = 0.1
 
-#: Names of the methods in time, and of those of them that are implicit.
+#: Names of the methods of static paths, of those in time, and of those of them that are implicit.
+STATIC = tuple(name for name, method in METHODS.items() if method.kind == "static")
 IN_TIME = tuple(name for name, method in METHODS.items() if method.kind != "static")
 IMPLICIT = tuple(name for name, method in METHODS.items() if method.kind == "implicit")

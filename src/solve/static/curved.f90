@@ -324,8 +324,9 @@ contains
    end subroutine report_no_path
 
    !> Corrections that take the springs to equilibrium at the displacement of the top under the axial load.
-   subroutine find_balance(self, correction, force, found)
+   subroutine find_balance(self, by_force, correction, force, found)
       class(curved_path), intent(inout) :: self
+      logical, intent(in) :: by_force
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
 
@@ -333,7 +334,7 @@ contains
       self%current%force = self%force
       self%current%t = 0.0_wp
       associate (equilibrium => self%equilibrium)
-         equilibrium%by_force = .false.
+         equilibrium%by_force = by_force
          equilibrium%driven = [self%displacement, 0.0_wp]
          equilibrium%load = [self%load_now, 0.0_wp]
          call equilibrium%solve(self%springs, self%current, found)

@@ -33,7 +33,7 @@ module rbs_solve_static_path
    !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
    !> follows a curve, and work is an integral over it, displacement and work have limits of their own.
    real(wp), parameter :: force_tolerance = 1.0e-9_wp, curve_work_tolerance = 1.0e-5_wp
-   real(wp), parameter :: curve_displacement_tolerance = 1.0e-10_wp
+   real(wp), parameter :: curve_displacement_tolerance = 1.0e-10_wp, leap_work_tolerance = 0.1_wp
    !> A displacement below this share of the height and a force below this share of the axial load have no
    !> digits to lose.
    real(wp), parameter :: no_digits = 1.0e-3_wp
@@ -157,10 +157,11 @@ module rbs_solve_static_path
       end subroutine solve_line_interface
 
       !> Corrections that take the springs, where they are and on their present lines, to equilibrium at the
-      !> displacement of the top.
-      subroutine balance_interface(self, correction, force, found)
+      !> displacement of the top, or under the force.
+      subroutine balance_interface(self, by_force, correction, force, found)
          import :: static_path, wp
          class(static_path), intent(inout) :: self
+         logical, intent(in) :: by_force
          !> Of the deformations (unknowns), and of the lateral force [N]
          real(wp), intent(out) :: correction(:), force
          logical, intent(out) :: found
@@ -269,6 +270,7 @@ contains
       self%task => task
       energy = self%energies()
       call begin_check(self%check, self%structure, self%springs, energy%residual)
+      if (task%leaps) self%check%work = leap_work_tolerance
       ! A continued path has forces and works from before, with their round-off.
       call self%check_point(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)

@@ -12,12 +12,12 @@ module rbs_solve_static_resume
    implicit none
    private
 
-   public :: begin_path, end_path, checkpoint_of
+   public :: begin_path, end_path, checkpoint_of, settle
 
    !> Joints have come to equilibrium if a correction is below this share of the deformations, measured by the
    !> initial stiffness; where round-off ends the progress before, below the second.
    real(wp), parameter :: settled = 1.0e-13_wp, nearly_settled = 1.0e-9_wp
-   integer, parameter :: most_rounds = 200, most_trials = 12
+   integer, parameter :: most_of_all = 2400, most_on_line = 12
 
 contains
 
@@ -87,7 +87,7 @@ contains
             path%displacement = path%structure%top_displacement(path%springs%d)
             path%force = checkpoint%force
             call path%compress(error)
-            if (.not. allocated(error)) call settle(path, error)
+            if (.not. allocated(error)) call settle_at_top(path, error)
             if (allocated(error)) return
             call path%reset_reference()
          end if
@@ -108,32 +108,54 @@ contains
       kind_of = 1 + merge(10, 0, path%by_force) + merge(100, 0, varies)
    end function kind_of
 
-   !> The joints come to equilibrium at the displacement of the top, by Newton's method with a line search.
-   !> Every trial starts from the present springs, each in one direction, so that earlier trials leave no
-   !> trace.
-   subroutine settle(path, error)
+   !> The joints come to equilibrium at the displacement of the top.
+   subroutine settle_at_top(path, error)
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
-      real(wp), dimension(path%structure%coordinates) :: q, correction, next_correction
-      real(wp) :: force_correction, next_force, before, change, slope, share, now, largest, line_lengths
+      real(wp) :: correction(path%structure%coordinates), force_correction, line_lengths
+      logical :: settled
+
+      ! Where nothing but round-off has been displaced, the lengths of the lines are the scale.
+      associate (lower => path%springs%lower, upper => path%springs%upper)
+         line_lengths = sum(path%structure%initial_stiffness*(upper - lower)**2, &
+                            mask=lower > -unbounded .and. upper < unbounded)
+      end associate
+      call path%springs%mark()
+      call path%find_balance(.false., correction, force_correction, settled)
+      if (settled) call settle(path, .false., line_lengths, most_of_all, correction, force_correction, settled)
+      if (.not. settled) then
+         call fatal_error(error, analysis_failed, 'initial: no equilibrium was found at the displacement '// &
+                          to_text(path%displacement)//' m in which the first analysis ended; let '// &
+                          'the motion come to rest first, or change axial_load')
+      end if
+      call path%springs%forget_mark()
+   end subroutine settle_at_top
+
+   !> Come to equilibrium by Newton's method with a line search, from a first correction. Every trial starts
+   !> from the mark, each spring in one direction, so that earlier trials leave no trace.
+   subroutine settle(path, by_force, least, most, correction, force_correction, is_settled)
+      class(static_path), intent(inout) :: path
+      !> Whether the lateral force is held, else the displacement of the top
+      logical, intent(in) :: by_force
+      !> Least scale of a correction, a product as below [J]
+      real(wp), intent(in) :: least
+      !> Most trials
+      integer, intent(in) :: most
+      !> Of the deformations (coordinates), and of the force [N]
+      real(wp), intent(inout) :: correction(:), force_correction
+      logical, intent(out) :: is_settled
+      real(wp), dimension(path%structure%coordinates) :: q, next_correction
+      real(wp) :: next_force, before, change, slope, share, now, largest
       type(false_position) :: line
-      integer :: round, trial
-      logical :: found, is_settled
+      integer :: trials, on_line
+      logical :: found
 
       q = path%springs%d
-      ! Where nothing but round-off has been displaced, the lengths of the lines are the scale.
-      correction = 0.0_wp
-      associate (lower => path%springs%lower, upper => path%springs%upper)
-         where (lower > -unbounded .and. upper < unbounded) correction(:size(lower)) = upper - lower
-      end associate
-      line_lengths = measure_of(correction, correction)
       is_settled = .false.
-      call path%springs%mark()
-      call path%find_balance(correction, force_correction, found)
-      largest = max(line_lengths, measure_of(q, q))
+      largest = max(least, measure_of(q, q))
       change = measure_of(correction, correction)
-      do round = 1, most_rounds
-         if (.not. found .or. .not. change < huge(1.0_wp)) exit
+      trials = 0
+      do while (trials < most .and. change < huge(1.0_wp))
          before = change
          call try(1.0_wp)
          if (.not. found) exit
@@ -142,7 +164,7 @@ contains
          if (slope < -0.3_wp*before) then
             line = false_position(at_low=before, at_high=slope)
             now = 1.0_wp
-            do trial = 1, most_trials
+            do on_line = 1, most_on_line
                share = line%next()
                call try(share - now)
                now = share
@@ -163,12 +185,7 @@ contains
          call try(1.0_wp)
          exit
       end do
-      if (.not. is_settled .or. path%springs%stuck) then
-         call fatal_error(error, analysis_failed, 'initial: no equilibrium was found at the displacement '// &
-                          to_text(path%displacement)//' m in which the first analysis ended; let '// &
-                          'the motion come to rest first, or change axial_load')
-      end if
-      call path%springs%forget_mark()
+      is_settled = is_settled .and. .not. path%springs%stuck
 
    contains
 
@@ -176,12 +193,12 @@ contains
       subroutine try(part)
          real(wp), intent(in) :: part
 
+         trials = trials + 1
          q = q + part*correction
          path%force = path%force + part*force_correction
-         call path%springs%restore()
-         call path%springs%move_all(q)
+         call path%springs%retry(q)
          found = .not. path%springs%stuck
-         if (found) call path%find_balance(next_correction, next_force, found)
+         if (found) call path%find_balance(by_force, next_correction, next_force, found)
       end subroutine try
 
       !> Product of two changes of deformations, measured by the initial stiffness [J].

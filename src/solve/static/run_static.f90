@@ -37,7 +37,7 @@ contains
       type(equilibrium_type) :: equilibrium
       real(wp) :: load(size(target)), factor
       integer :: i
-      logical :: varies
+      logical :: varies, curves
 
       call check_values(target, trim(merge('force       ', 'displacement', by_force)), error)
       if (allocated(error)) return
@@ -56,7 +56,12 @@ contains
             loaded => other
          end if
       end if
-      if (varies .or. structure%kinematics == finite) then
+      curves = varies .or. structure%kinematics == finite
+      if (task%leaps .and. (curves .or. structure%in_series)) then
+         task%leaps = .false.
+         task%summary%reason = "newton is for frames, and columns with 'pdelta', under constant axial loads"
+      end if
+      if (curves) then
          select type (column => loaded)
          class is (column_type)
             call trace_curved(column, by_force, target, pack(load, varies), task, error)
@@ -83,7 +88,7 @@ contains
       end if
       ! Without inertia the ground balances the driving force.
       task%summary%peak_base_shear = task%summary%peak_force
-      task%summary%method = 'static'
+      task%summary%method = merge('newton', 'static', task%leaps)
 
    contains
 

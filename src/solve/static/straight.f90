@@ -3,6 +3,7 @@
 !> increments.
 module rbs_solve_static_straight
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_inner_product, only: total
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -13,7 +14,7 @@ module rbs_solve_static_straight
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, state_of, target_of, weakest_spring, is_on_end, &
                                     on_the_end, serialize_path
-   use rbs_solve_static_resume, only: begin_path, end_path, checkpoint_of
+   use rbs_solve_static_resume, only: begin_path, end_path, checkpoint_of, settle
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: structure_type
    implicit none
@@ -35,6 +36,12 @@ module rbs_solve_static_straight
    !> Lines without progress toward a target after which a path is given up: some, and some for each spring.
    integer, parameter :: most_idle = 1000, most_idle_per_spring = 10
 
+   !> Shortest leap, as a share of the way to a target, and most trials of one. Shares of the largest force by
+   !> whose work and by which a leap may be wrong; work counts over this share of the way at the least.
+   real(wp), parameter :: shortest_leap = 1.0_wp/64.0_wp, missing_work = 1.0e-2_wp, missing_turns = 3.0e-4_wp, &
+                          coarse = 0.125_wp
+   integer, parameter :: most_trials = 24
+
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
       type(equilibrium_type), pointer :: equilibrium => null()
@@ -47,8 +54,8 @@ module rbs_solve_static_straight
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
       integer :: ends = 0
-      !> Largest value of the control, and the largest share of the path to the present target
-      real(wp) :: farthest = 0.0_wp, share = 0.0_wp
+      !> Largest value of the control; the way to the present target, and the largest share of it so far
+      real(wp) :: farthest = 0.0_wp, way = 0.0_wp, share = 0.0_wp
       !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; motion
       !> of the load since then [m]
       logical :: in_loop = .false.
@@ -99,10 +106,137 @@ contains
       !> Displacement [m] or force [N]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
+      real(wp) :: whole, length, next
+      logical :: arrived
+
+      self%share = 0.0_wp
+      self%way = target - self%control_begin
+      if (.not. self%task%leaps .or. self%structure%in_series .or. self%in_loop) then
+         call follow_events(self, target, error)
+         return
+      end if
+      length = target - self%control
+      whole = length
+      do
+         if (.not. abs(target - self%control) > 0.0_wp) return
+         if (self%task%stops()) return
+         next = target
+         if (abs(next - self%control) > 1.5_wp*abs(length)) next = self%control + length
+         ! Springs turn as they must.
+         self%arrived = 0
+         self%direction = 0
+         call leap(self, next, missing_work*max(1.0_wp, coarse*abs(whole/(next - self%control))), arrived)
+         if (.not. arrived .and. abs(length) > shortest_leap*abs(whole)) then
+            length = 0.5_wp*length
+            cycle
+         end if
+         if (.not. arrived) then
+            call follow_events(self, next, error)
+            if (allocated(error) .or. self%loses_load() .or. self%task%summary%stopped) return
+         end if
+         length = 2.0_wp*length
+         if (.not. abs(target - self%control) > 0.0_wp) return
+         self%share = max(self%share, (self%control - self%control_begin)/self%way)
+         call self%record_corner(self%share)
+      end do
+   end subroutine advance
+
+   !> Go to a displacement or a force in one leap, by Newton's method. Every spring follows its rule on the way,
+   !> in one direction: the end is that of the path if no spring turns in between. Nothing has happened where
+   !> no equilibrium is found, where it is not stable, where work or the way of springs that have turned is
+   !> missing, or a member fails.
+   subroutine leap(self, next, missing, arrived)
+      class(straight_path), intent(inout) :: self
+      real(wp), intent(in) :: next
+      !> Most work that may be missing, as a share of that of the largest force
+      real(wp), intent(in) :: missing
+      logical, intent(out) :: arrived
+      real(wp) :: first(size(self%rate)), correction(size(self%rate)), force_correction, slope
+      real(wp) :: change, displacement, force, energy, moved, work, largest
+
+      change = next - self%control
+      displacement = self%displacement
+      force = self%force
+      energy = stored()
+      call self%springs%mark()
+      call self%solve_line(1, arrived)
+      associate (line => self%equilibrium, springs => self%springs)
+         if (arrived) then
+            first = self%rate
+            slope = merge(-line%displacement_rate, line%force_rate, self%by_force)
+            correction = line%correction + change*first
+            force_correction = line%force_correction + change*line%force_rate
+            if (.not. self%by_force) self%displacement = next
+            call settle(self, self%by_force, 0.0_wp, most_trials, correction, force_correction, arrived)
+         end if
+         if (arrived) then
+            if (self%by_force) self%displacement = self%structure%top_displacement(springs%d)
+            moved = self%displacement - displacement + line%dead_load_work_rate*change
+            slope = slope - merge(-line%displacement_rate, line%force_rate, self%by_force)
+            ! The trapezoid, with the slopes at its ends
+            work = 0.5_wp*(force + self%force)*moved + slope*change**2/12.0_wp
+            largest = max(abs(force), abs(self%force), self%task%summary%peak_force)
+            arrived = (line%is_stable .or. self%by_force) .and. &
+                      abs(work - (stored() - energy)) <= missing*abs(largest*moved) .and. &
+                      force_of_turns(self, first, change) <= missing_turns*largest .and. &
+                      .not. self%loses_load() .and. self%structure%next_failed_member(springs) == 0
+         end if
+         if (.not. arrived) then
+            call springs%restore()
+            self%displacement = displacement
+            self%force = force
+         end if
+         call springs%forget_mark()
+      end associate
+      if (.not. arrived) return
+      self%work = self%work + work
+      self%control = next
+      self%last_direction = merge(1, -1, change > 0.0_wp)
+      self%farthest = max(self%farthest, abs(next))
+
+   contains
+
+      !> Energy of springs and axial load [J].
+      real(wp) function stored()
+         stored = total(self%springs%count, self%springs%work) + &
+                  self%structure%potential_energy(self%springs%d)
+      end function stored
+
+   end subroutine leap
+
+   !> Force by which a leap may be wrong as springs have turned in it: those whose rate at the end is opposite
+   !> to that at the start have gone some way and back.
+   pure real(wp) function force_of_turns(self, first, change) result(force)
+      class(straight_path), intent(in) :: self
+      !> Rates at the start (coordinates)
+      real(wp), intent(in) :: first(:)
+      !> Of the driven quantity
+      real(wp), intent(in) :: change
+      real(wp) :: share
+      integer :: i
+
+      force = 0.0_wp
+      associate (springs => self%springs, rate => self%rate)
+         do i = 1, self%moving
+            if (first(i)*rate(i) >= 0.0_wp) cycle
+            ! Share of the leap before the turn, if the rates change there alone.
+            share = ((springs%d(i) - springs%journal%d(i))/change - rate(i))/(first(i) - rate(i))
+            share = min(max(share, 0.0_wp), 1.0_wp)
+            force = force + abs((self%structure%initial_stiffness(i) - springs%k(i))*change*rate(i))* &
+                    min(abs(first(i))*share, abs(rate(i))*(1.0_wp - share))
+         end do
+      end associate
+   end function force_of_turns
+
+   !> Go on to a target from event to event.
+   subroutine follow_events(self, target, error)
+      class(straight_path), intent(inout) :: self
+      !> Displacement [m] or force [N]
+      real(wp), intent(in) :: target
+      type(error_type), allocatable, intent(out) :: error
       integer :: direction, idle
       logical :: went_back
 
-      self%share = 0.0_wp
       direction = 0
       idle = 0
       do while (idle <= most_idle + most_idle_per_spring*self%springs%count)
@@ -157,13 +291,13 @@ contains
       subroutine report_corner()
          real(wp) :: share
 
-         share = (self%control - self%control_begin)/(target - self%control_begin)
+         share = (self%control - self%control_begin)/self%way
          if (share > self%share) idle = 0
          self%share = max(self%share, share)
          call self%record_corner(self%share)
       end subroutine report_corner
 
-   end subroutine advance
+   end subroutine follow_events
 
    !> The control moves back from here on; the first time of a loop counts for its energy.
    subroutine begin_loop(self)
@@ -367,13 +501,14 @@ contains
       self%direction = 0
    end subroutine end_line
 
-   !> Corrections that take the springs to equilibrium at the displacement of the top.
-   subroutine find_balance(self, correction, force, found)
+   !> Corrections that take the springs to equilibrium at the displacement of the top, or under the force.
+   subroutine find_balance(self, by_force, correction, force, found)
       class(straight_path), intent(inout) :: self
+      logical, intent(in) :: by_force
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
 
-      call self%equilibrium%follow(self%springs, .false., self%displacement, self%force, self%rate, found)
+      call self%equilibrium%follow(self%springs, by_force, self%displacement, self%force, self%rate, found)
       correction = self%equilibrium%correction
       force = self%equilibrium%force_correction
    end subroutine find_balance
