@@ -128,7 +128,13 @@ def runs() -> dict[str, Callable[[], Any]]:
         "record, wall-frame, default": shake(walls, dt=0.01),
         "drawn 16 x 4, made": lambda: rbsdem.examples.house(16, 4).parts,
         "drawn 16 x 4, push-over to 1.5 %": lambda: rbsdem.pushover(tower, drift=0.015),
-        "building in plan, push-over to 0.03 %": lambda: rbsdem.pushover(plan, drift=3e-4),
+        "drawn 16 x 4, push-over to 1.5 %, in leaps": lambda: rbsdem.pushover(
+            tower, drift=0.015, method="newton"
+        ),
+        "building in plan, push-over to 0.03 %": lambda: rbsdem.pushover(
+            plan, drift=3e-4, method="static"
+        ),
+        "building in plan, push-over to 3 %, in leaps": lambda: rbsdem.pushover(plan, drift=0.03),
         "building in plan, record, default": shake(plan, dt=0.01),
         "static, one body, 6000 points": lambda: rbsdem.cyclic(one, displacement=way),
         "static, layered column, 3900 points": lambda: rbsdem.cyclic(layered, displacement=drifts),

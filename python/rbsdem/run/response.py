@@ -103,13 +103,14 @@ def cyclic(
     corners : bool, optional
         Whether to keep rows between the points too: where a spring leaves its line, or a leap ends.
     method : {"static", "newton"}, optional
-        From event to event, or in leaps from point to point by Newton's method: of large drawn
-        frames a small part of the time. On each leap every spring follows its rule exactly, in one
-        direction; a leap is cut where springs turn in it by more than 3e-4 of the largest force or
-        where work is missing, and its shortest parts go from event to event. Errors by
-        ``studies/random_frames.py --kind leaps`` are mostly below 1e-4 of the peak. One of a
-        thousandth and snap-backs that short are passed over unseen. Columns whose path is curved,
-        or whose joints nothing couples, go from event to event all the same.
+        From event to event (the default), or in leaps from point to point by Newton's method, which
+        takes large drawn frames a small part of the time. In a leap every spring follows its rule
+        exactly, in one direction. A leap is halved where springs that turn in it may change the
+        force by 3e-4 of the largest one, or where work is missing; a 64th of the way that still
+        fails goes by its events. Errors are mostly below 1e-4 of the peak force
+        (``studies/random_frames.py --kind leaps``); drops of the force below 2 % of it may be
+        passed over. Columns with "finite", under axial loads that vary, or with "small" go from
+        event to event all the same.
     max_seconds : float, optional
         A path that takes longer [s] ends there: `summary["status"]` is "stopped", and its rows are
         those up to there.

@@ -37,9 +37,8 @@ module rbs_solve_static_straight
    integer, parameter :: most_idle = 1000, most_idle_per_spring = 10
 
    !> Shortest leap, as a share of the way to a target, and most trials of one. Shares of the largest force by
-   !> whose work and by which a leap may be wrong; work counts over this share of the way at the least.
-   real(wp), parameter :: shortest_leap = 1.0_wp/64.0_wp, missing_work = 1.0e-2_wp, missing_turns = 3.0e-4_wp, &
-                          coarse = 0.125_wp
+   !> whose work and by which a leap may be wrong.
+   real(wp), parameter :: shortest_leap = 1.0_wp/64.0_wp, missing_work = 1.0e-2_wp, missing_turns = 3.0e-4_wp
    integer, parameter :: most_trials = 24
 
    !> The state of a path and the line it is on.
@@ -125,7 +124,7 @@ contains
          ! Springs turn as they must.
          self%arrived = 0
          self%direction = 0
-         call leap(self, next, missing_work*max(1.0_wp, coarse*abs(whole/(next - self%control))), arrived)
+         call leap(self, next, arrived)
          if (.not. arrived .and. abs(length) > shortest_leap*abs(whole)) then
             length = 0.5_wp*length
             cycle
@@ -145,11 +144,9 @@ contains
    !> in one direction: the end is that of the path if no spring turns in between. Nothing has happened where
    !> no equilibrium is found, where it is not stable, where work or the way of springs that have turned is
    !> missing, or a member fails.
-   subroutine leap(self, next, missing, arrived)
+   subroutine leap(self, next, arrived)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: next
-      !> Most work that may be missing, as a share of that of the largest force
-      real(wp), intent(in) :: missing
       logical, intent(out) :: arrived
       real(wp) :: first(size(self%rate)), correction(size(self%rate)), force_correction, slope
       real(wp) :: change, displacement, force, energy, moved, work, largest
@@ -177,7 +174,7 @@ contains
             work = 0.5_wp*(force + self%force)*moved + slope*change**2/12.0_wp
             largest = max(abs(force), abs(self%force), self%task%summary%peak_force)
             arrived = (line%is_stable .or. self%by_force) .and. &
-                      abs(work - (stored() - energy)) <= missing*abs(largest*moved) .and. &
+                      abs(work - (stored() - energy)) <= missing_work*abs(largest*moved) .and. &
                       force_of_turns(self, first, change) <= missing_turns*largest .and. &
                       .not. self%loses_load() .and. self%structure%next_failed_member(springs) == 0
          end if
