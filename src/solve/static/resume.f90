@@ -122,7 +122,9 @@ contains
       end associate
       call path%springs%mark()
       call path%find_balance(.false., correction, force_correction, settled)
-      if (settled) call settle(path, .false., line_lengths, most_of_all, correction, force_correction, settled)
+      if (settled) then
+         call settle(path, .false., line_lengths, most_of_all, correction, force_correction, settled)
+      end if
       if (.not. settled) then
          call fatal_error(error, analysis_failed, 'initial: no equilibrium was found at the displacement '// &
                           to_text(path%displacement)//' m in which the first analysis ended; let '// &

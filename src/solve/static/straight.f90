@@ -140,10 +140,10 @@ contains
       end do
    end subroutine advance
 
-   !> Go to a displacement or a force in one leap, by Newton's method. Every spring follows its rule on the way,
-   !> in one direction: the end is that of the path if no spring turns in between. Nothing has happened where
-   !> no equilibrium is found, where it is not stable, where work or the way of springs that have turned is
-   !> missing, or a member fails.
+   !> Go to a displacement or a force in one leap, by Newton's method. Every spring follows its rule on the
+   !> way, in one direction: the end is that of the path if no spring turns in between. Nothing has happened
+   !> where no equilibrium is found, where it is not stable, where work or the way of springs that have turned
+   !> is missing, or a member fails.
    subroutine leap(self, next, arrived)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: next
