@@ -101,6 +101,10 @@ contains
                call join_times(history%time, time)
             end associate
          end do
+         do j = 1, signals
+            if (index(signal_names(j), 'acceleration') == 0) cycle
+            if (history%loads%signal(j)%acts()) call end_in_rest(history%time, history%loads%signal(j))
+         end do
          if (case%loadings == 0) call messages%add('the case has no loading; give it a group &loading')
       end subroutine load_values
 
@@ -121,6 +125,21 @@ contains
       end subroutine cut_duration
 
    end subroutine load_case
+
+   !> Let rest follow a record that ends before another one.
+   subroutine end_in_rest(all_times, record)
+      real(wp), intent(in) :: all_times(:)
+      type(signal_type), intent(inout) :: record
+      integer :: n, known
+
+      n = size(record%time)
+      if (n < 2) return
+      ! Times that differ by round-off are one.
+      known = count(all_times < 1.5_wp*record%time(n) - 0.5_wp*record%time(n - 1))
+      if (known == size(all_times)) return
+      record%time = [record%time, all_times(known + 1)]
+      record%value = [record%value, 0.0_wp]
+   end subroutine end_in_rest
 
    !> Merge the times of two loadings into one ascending list. Times that differ by round-off are merged.
    subroutine join_times(all_times, more)

@@ -443,7 +443,7 @@ def test_a_member_of_a_frame_is_removed_and_comes_back(frame):
     page.wait(lambda: page.all("#frame .removed"))
 
 
-def test_a_building_in_plan_shows_one_frame_at_a_time(frame):
+def test_a_building_in_plan_shows_one_frame_at_a_time(frame, tmp_path):
     page = frame
     page.type("#f-frame-storeys", "3200")
     page.one("#setinplan").click()
@@ -466,6 +466,22 @@ def test_a_building_in_plan_shows_one_frame_at_a_time(frame):
     assert cells == ["y", "1", "2", "1", "none"]
     page.one("#undo").click()
     page.wait(lambda: not page.all("#frame .removed"))
+    # A record along x, which moves no frame along y, and then another one along y
+    Select(page.one("#f-loading-kind")).select_by_value("record")
+    page.wait(lambda: page.all("#f-loading-file_y"))
+    record = tmp_path / "short.csv"
+    record.write_text("time_s,acceleration_g\n" + "".join(f"{0.02 * i},0.2\n" for i in range(9)))
+    for key in ("file", "file_y"):
+        page.one(f"#f-loading-{key}").click()
+        page.one("#recordfile").send_keys(str(record))
+        page.wait(lambda: page.text(f"#f-loading-{key}") == "short.csv")  # noqa: B023
+    # The largest shear of the frame along y, which is shown
+
+    def largest():
+        cells = [cell.text.replace("−", "-") for cell in page.all("#storeytable td")]
+        return float(cells[3]) if len(cells) > 3 and not page.old() else 0.0
+
+    page.wait(lambda: largest() > 1.0)
 
 
 def test_a_building_is_drawn_by_its_fields(frame):

@@ -18,6 +18,7 @@ from rbsdem.frames import Frame, FrameMember, FrameNode, Member, TeeSection
 from rbsdem.methods.verification import eccentric_storey, peterson, sprung_storey
 from rbsdem.run.case import case_of_text
 from rbsdem.springs import Elastic, Layered
+from rbsdem.web.answers import Answers
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
@@ -347,6 +348,22 @@ def test_runs_of_pairs_are_those_of_one_by_one(house, tmp_path):
     again = rbsdem.ensemble(house, [(x, swings(3)), (x, y)], scales=scales, **settings)
     assert again.resumed == 2
     assert list(again.motions) == ["swing 0 and swing 3", "swing 0 and swing 1"]
+
+
+def test_rest_follows_the_shorter_record_of_a_case():
+    house = plan(floor_load=6e3, mass="from_loads", damping=0.05)
+    pair = swings(0), swings(1, size=150)
+    text = house.to_namelist() + "&analysis method = 'newmark', dt = 0.01 /\n"
+    for drive, swing in zip(("ground_acceleration", "ground_acceleration_y"), pair, strict=True):
+        values = ", ".join(map(repr, swing.acceleration.tolist()))
+        text += f"&loading drive = '{drive}', interval = 0.01, values = {values} /\n"
+    of_case, alone = case_of_text(text).run(), rbsdem.time_history(house, pair, **SHAKEN)
+    np.testing.assert_array_equal(of_case.floor_y, alone.floor_y)
+    # On the page it is drawn, and saved as the same case.
+    page = Answers()
+    state = page.open({"text": text}, None)["state"]
+    saved = page.export({"state": state, "form": "namelist"}, None)["text"]
+    assert case_of_text(saved) == case_of_text(text)
 
 
 @pytest.mark.usefixtures("without_figures")

@@ -452,7 +452,7 @@ def opened(text: object, keep: Callable[[GroundMotion, str], str]) -> dict[str, 
 
 def _keep_record(values: dict[str, Any], keep: Callable[[GroundMotion, str], str]) -> bool:
     """Put the name of a record in place of its values; return whether the page can show it."""
-    if values["drive"] != "ground_acceleration":
+    if not values["drive"].startswith("ground_acceleration"):
         return bool(values["drive"] == "displacement")
     steps = np.diff(values.pop("time", [0.0, values.pop("interval", 0.0)]))
     if "values" not in values or values.get("unit", "m/s2") != "m/s2":

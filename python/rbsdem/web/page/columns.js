@@ -58,7 +58,7 @@ export const columnLanes = [
 function valueOf(path) {
   const groups = cases()[active];
   if (isText(groups)) return null;
-  if (path.startsWith("loading.")) return loadingValue(valuesOf(groups, "loading"), path.slice(8));
+  if (path.startsWith("loading.")) return loadingValue(groups, path.slice(8));
   if (path === "footing.kind") return onSprings(groups) ? "springs" : "none";
   return sectionValue(groups, path);
 }

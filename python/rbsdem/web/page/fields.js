@@ -88,21 +88,34 @@ function kindOfLoading({ drive, file, protocol, amplitudes, values }) {
 }
 export const isShaken = groups => !isText(groups) && valuesOf(groups, "loading")?.drive === "ground_acceleration";
 
+// The record along y of a building in plan.
+const DRIVE_Y = "ground_acceleration_y";
+export const ALONG_Y = { path: "loading.seed_y", label: "Number of that along y", dimension: "number", whole: true, step: 1, optional: "none", kinds: ["synthetic"] };
+const alongY = groups => groups.find(([name, { drive }]) => name === "loading" && drive === DRIVE_Y);
+
 // What a field of the loading shows, also of those that stand for several keys; and what it does to the loading.
-export function loadingValue(loading, key) {
+export function loadingValue(groups, key) {
+  const loading = valuesOf(groups, "loading") ?? {}, across = alongY(groups);
   if (key === "kind") return kindOfLoading(loading);
-  if (key === "seed") return Number(loading.file?.split(" ")[1]);
+  if (key.startsWith("seed")) return key === "seed" ? Number(loading.file?.split(" ")[1]) : across && Number(across[1].file?.split(" ")[1]);
   return key === "scale" ? loading.scale ?? 1 : loading[key];
 }
 export function putLoading(groups, key, value) {
   if (!groupOf(groups, "loading")) groups.push(["loading", {}]);
-  const loading = groupOf(groups, "loading");
+  const loading = groupOf(groups, "loading"), across = alongY(groups);
   if (key === "kind") {
     if (value !== kindOfLoading(loading[1])) loading[1] = JSON.parse(JSON.stringify(LOADINGS[value] ?? loading[1]));
-    // A method that was for the loading before
-    groups.splice(0, groups.length, ...groups.filter(([name]) => name !== "analysis"));
+    // A method that was for the loading before, and a record along y
+    groups.splice(0, groups.length, ...groups.filter(one => one[0] !== "analysis" && one !== across));
   } else if (key === "seed") loading[1].file = `synthetic ${value}`;
-  else putAt(groups, `loading.${key}`, value);
+  else if (key.endsWith("_y")) {
+    if (across) groups.splice(groups.indexOf(across), 1);
+    const file = key === "seed_y" ? `synthetic ${value}` : value;
+    if (value !== null) groups.splice(groups.indexOf(loading) + 1, 0, ["loading", { ...loading[1], drive: DRIVE_Y, file }]);
+  } else {
+    putAt(groups, `loading.${key}`, value);
+    if (key === "scale" && across) across[1].scale = value;
+  }
 }
 
 export function element(name, properties = {}, ...children) {
@@ -220,23 +233,26 @@ export function fieldGroup(title, rows) {
   return rows.length ? [element("fieldset", {}, element("legend", {}, title), ...rows)] : [];
 }
 
-// The fields of a loading, with the button that opens a record. `edit(path, value, done)`.
+// The fields of a loading, with the buttons that open records. `edit(path, value, done)`.
 export function loadingRows(groups, system, edit, fixed, fields = LOADING_FIELDS) {
   const loading = valuesOf(groups, "loading") ?? {}, kind = kindOfLoading(loading);
   const rows = fields
     .filter(field => !field.kinds || field.kinds.includes(kind))
     .map(field => {
       const own = kind === "path" && field.path === "loading.kind" ? { ...field, choices: [["path", `path of ${loading.values?.length ?? 0} points`], ...field.choices] } : field;
-      return fieldRow(own, loadingValue(loading, parts(field.path)[1]), system, (value, done) => edit(field.path, value, done), fixed, placeOf(groups, field.path));
+      return fieldRow(own, loadingValue(groups, parts(field.path)[1]), system, (value, done) => edit(field.path, value, done), fixed, placeOf(groups, field.path));
     });
   if (kind === "record") {
-    const button = element("button", { type: "button", disabled: fixed, id: "f-loading-file" }, loading.file?.split("#")[0] || "Open a record…");
-    button.addEventListener("click", () => document.getElementById("recordfile").click());
-    button.setAttribute("aria-describedby", "f-loading-file-fault f-loading-file-hint");
-    button.dataset.path = placeOf(groups, "loading.file");
-    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-file-fault", hidden: true }),
-      element("p", { className: "hint", id: "f-loading-file-hint" }, "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2)."));
-    rows.splice(1, 0, row);
+    const buttons = [["Record", "file", groupOf(groups, "loading")], ["Record along y", "file_y", alongY(groups)]].slice(0, fields.includes(ALONG_Y) ? 2 : 1);
+    rows.splice(1, 0, ...buttons.map(([label, key, own], i) => {
+      const id = `f-loading-${key}`, hint = "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2).";
+      const button = element("button", { type: "button", disabled: fixed, id }, own?.[1].file?.split("#")[0] || `Open a ${label.toLowerCase()}…`);
+      button.addEventListener("click", () => { const chosen = document.getElementById("recordfile"); chosen.dataset.key = key; chosen.click(); });
+      button.setAttribute("aria-describedby", `${id}-fault ${id}-hint`);
+      button.dataset.path = `${groups.indexOf(own)}.file`;
+      return element("div", { className: "row" }, element("span", {}, label), button, element("p", { className: "fault", id: `${id}-fault`, hidden: true }),
+        element("p", { className: "hint", id: `${id}-hint` }, i ? "" : hint));
+    }));
   }
   return rows;
 }

@@ -3,7 +3,7 @@
 import { inUnits, shown, unitOf } from "./units.js";
 import { drawChart, svgElement } from "./chart.js";
 import { drawSection } from "./drawing.js";
-import { LOADING_FIELDS, drawingsOf, element, fieldGroup, fieldRow, fieldsOf, groupOf, listRows, loadingRows, loadingValue, placeOf, putAt, putLoading, refreshFields, showFaults, toldAs, valuesOf } from "./fields.js";
+import { ALONG_Y, LOADING_FIELDS, drawingsOf, element, fieldGroup, fieldRow, fieldsOf, groupOf, listRows, loadingRows, loadingValue, placeOf, putAt, putLoading, refreshFields, showFaults, toldAs, valuesOf } from "./fields.js";
 import { SECTION_FIELDS, SECTION_KEYS, completeSection, sectionRows, sectionValue, shapeOf } from "./section.js";
 import { table, timeChart } from "./panels.js";
 import { beside, changed, copied, edit, get, keyOf, page, say, showNotes, showStatus } from "./machine.js";
@@ -52,7 +52,7 @@ const INFILL = [
   { ...load("opening_length", "opening", "length", 0.1), optional: "–" }, { ...load("opening_height", "its height", "length", 0.1), optional: "–" },
 ];
 const PLACED = fieldsOf(["line", "bay", "storey", "floor", "kind", "kind_to", "lines", "bays", "line_x", "line_y", "along", "of_line"].flatMap(key => ["column_of", "beam_of", "infill_of", "node_load", "floor"].map(name => ({ path: `${name}.${key}`, label: key, choices: [] }))));
-const FIELDS = [GRID, IN_PLAN, LOADS, DEMAND, [PATTERN, NAME], LOADING, SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path)].flat();
+const FIELDS = [GRID, IN_PLAN, LOADS, DEMAND, [PATTERN, NAME], [...LOADING, ALONG_Y], SECTION_FIELDS.flatMap(({ fields }) => fields).filter(field => field.path)].flat();
 const KNOWN = { ...PLACED, ...fieldsOf([...FIELDS, ...SECTION_KEYS, ...INFILL.map(cell => ({ ...cell, path: `infill.${cell.key}` })),
   { path: "floor.dead_load", label: "Dead load", dimension: "line" }, { path: "floor.live_load", label: "Live load", dimension: "line" }, { path: "floor.edge_load", label: "Facades", dimension: "line" },
   { path: "floor.floor_load", label: "Dead load", dimension: "area" }, { path: "floor.live_floor_load", label: "Live load", dimension: "area" }, { path: "node_load.load", label: "Load", dimension: "force" }]) };
@@ -142,7 +142,7 @@ function remove(name) {
 // ---- the form --------------------------------------------------------------------------------------
 
 function valueOf(path) {
-  if (path.startsWith("loading.")) return loadingValue(valuesOf(groups(), "loading") ?? {}, path.slice(8));
+  if (path.startsWith("loading.")) return loadingValue(groups(), path.slice(8));
   return sectionValue(own(), path);
 }
 
@@ -296,7 +296,7 @@ function showForm() {
     ["Loads and masses", rows(LOADS)],
     ["Masonry", [...list("infill", INFILL, { what: "masonry", add: last => ({ ...(last ?? { thickness: 0.2, fm: 3e6 }), name: `I${infills.length + 1}` }) }),
       ...(infills.length ? list("infill_of", cells("infill_of", infills), { what: "infills", add: () => ({ ...along, kind: infills.at(-1) }) }) : [])]],
-    ["Loading", [...loadingRows(all, system, edit, false, LOADING), ...rows([PATTERN])]],
+    ["Loading", [...loadingRows(all, system, edit, false, plan ? [...LOADING, ALONG_Y] : LOADING), ...rows([PATTERN])]],
     ["Demand and acceptance", rows(DEMAND.map(field => field.path === "assess.level" ? { ...field, choices: levels } : field), field => !field.spectrum || field.spectrum === spectrum)],
   ].flatMap(([title, made]) => fieldGroup(title, made)));
   showMessages();

@@ -1,7 +1,7 @@
 // The state machine of the page: an input, the answers that stand, undo, link, open and save. A view draws one kind of input.
 
 import { SYSTEMS } from "./units.js";
-import { element, groupOf, isText, putAt } from "./fields.js";
+import { element, groupOf, isText, putLoading } from "./fields.js";
 import { addSaves, download, saveShown } from "./panels.js";
 import { makeHistory, packed, unpacked } from "./history.js";
 import { ask, makeLane } from "./answers.js";
@@ -217,7 +217,7 @@ async function openRecord(file) {
   const answer = await ask("record", { name: file.name, text: await file.text() });
   if (!answer) return;
   if (answer.faults) { page.note = answer.faults[0].text; page.view.showMessages(); say(page.note); return; }
-  for (const one of page.view.state.cases) if (!isText(one)) putAt(one, "loading.file", answer.file);
+  for (const one of page.view.state.cases) if (!isText(one)) putLoading(one, get("recordfile").dataset.key, answer.file);
   changed(true);
 }
 
