@@ -440,6 +440,16 @@ def test_pairs_that_cannot_be_run_are_refused(house, call, told):
         call(house)
 
 
+def halved(frame):
+    """Return a frame with a node in the middle of its column."""
+    post, spring = frame.members
+    foot, top = (node for node in frame.nodes if node.name in (post.start, post.end))
+    middle = FrameNode("middle", foot.x, 0.5 * (foot.y + top.y))
+    kind = replace(post.kind, ends="continuous")
+    halves = [Member("low", foot.name, "middle", kind), Member("high", "middle", top.name, kind)]
+    return replace(frame, nodes=[*frame.nodes, middle], members=[*halves, spring])
+
+
 REFUSED = [
     (lambda f: rbsdem.Building([(f, 0.0, 3.0)]), "floor 1: the planes leave it free to turn"),
     (lambda f: rbsdem.Building([(f, 30.0, 0.0)]), "free to turn, or to move"),
@@ -472,8 +482,11 @@ REFUSED = [
     (lambda f: rbsdem.Building([(f, 0.0, 0.0)]).plane("x-2"), "is not of this frame"),
     (
         lambda f: rbsdem.Building([(f, angle, 0.0, 0.0) for angle in (0.0, 180.0)]),
-        "along one direction; a column bends once in it",
+        "along one direction, in which a column bends once",
     ),
+    (lambda f: rbsdem.Building([(f, 0, 0, 0), (halved(f), 90, 0, 0)]), "end at different heights"),
+    (lambda f: rbsdem.Building([(rbsdem.Building([(f, 0, 0)]), 0, 0)]), "must be a tuple"),
+    (lambda f: rbsdem.Building([(f, np.nan, 0)]), "frames.0.: value 1 of 2 is nan"),
 ]
 
 

@@ -248,8 +248,10 @@ class BuildingResult(Result):
         """Columns that are beyond yield in both planes at once, and the time of the first row."""
         first_beyond: dict[str, float] = {}
         path = self.path
-        beyond = {name: _beyond_yield(result) for name, result in path.frames.items()}
-        for second, first in self.building.axial_of.items():
+        shared = self.building.axial_of
+        names = {column.split(":")[0] for pair in shared.items() for column in pair}
+        beyond = {name: _beyond_yield(path.frame(name)) for name in names}
+        for second, first in shared.items():
             (first_plane, c1), (second_plane, c2) = first.split(":"), second.split(":")
             sides = (
                 [beyond[first_plane].get((c1, end)) for end in (0.0, 1.0)],

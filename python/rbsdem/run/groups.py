@@ -300,13 +300,12 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
     kinds = _kinds(groups, drawings)
     frame = _core.typed("frame", groups["frame"][-1])
     bays, storeys = len(frame.get("bays", ())), max(len(frame.get("storeys", ())), 1)
-    damping = groups.get("damping")
     panels = [group for group in groups.get("flexure", []) if "panel" in group]
     drawn = {name: frame.pop(name) for name in _DRAWN if name in frame}
     made = frame | {
         "nodes": _nodes(groups, bays + 1),
         "members": [_member(group, kinds[group["kind"]]) for group in groups.get("member", [])],
-        "damping": Damping(**_core.typed("damping", damping[-1])) if damping else None,
+        "damping": _damping(groups),
         "panel": next((_spring(group) for group in panels if group["panel"] == "all"), None),
         "losses": _losses(groups) or None,
     }
@@ -323,9 +322,7 @@ def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
     cells = [*(columns or {}).values(), *(beams or {}).values()]
     if not (any(map(is_drawn, cells)) or drawn or weights or infilled or any(live)):
         return Frame(columns=columns, beams=beams, floor_mass=mass, beam_load=dead, **made)
-    if "panel_hoops" in drawn:
-        hoops = kinds.get(drawn["panel_hoops"])
-        drawn["panel_hoops"] = getattr(hoops, "ties", drawn["panel_hoops"])
+    _put_hoops(drawn, kinds)
     if any(mass):
         made["floor_mass"] = mass
     return Frame.grid(
@@ -350,19 +347,25 @@ def building_in_plan(groups: Groups, drawings: Sequence[Groups] = ()) -> Buildin
             raise InputError(f"frame: {name} is missing beside bays_x; give it")
     made = _cells_in_plan(groups, kinds, infills)
     storeys = len(frame["storeys"])
-    for key, name in (
-        ("floor_load", "floor_load"), ("live_load", "live_floor_load"), ("edge_load", "edge_load")
-    ):  # fmt: skip
+    for key in ("floor_load", "live_load", "edge_load", "floor_mass"):
+        name = {"live_load": "live_floor_load", "floor_mass": "mass"}.get(key, key)
         made[key] = _by_floor(name, storeys, groups)
-    masses = _by_floor("mass", storeys, groups)
-    made["floor_mass"] = masses if any(masses) else None
+    if not any(made["floor_mass"]):
+        made["floor_mass"] = None
     made["eccentricity"] = [frame.pop(f"eccentricity_{along}", 0.0) for along in "xy"]
-    if "panel_hoops" in frame:
-        hoops = kinds.get(frame["panel_hoops"])
-        frame["panel_hoops"] = getattr(hoops, "ties", frame["panel_hoops"])
-    if damping := groups.get("damping"):
-        made["damping"] = Damping(**_core.typed("damping", damping[-1]))
-    return Building.grid(**made, **frame)
+    _put_hoops(frame, kinds)
+    return Building.grid(**made, **frame, damping=_damping(groups))
+
+
+def _damping(groups: Groups) -> Damping | None:
+    given = groups.get("damping")
+    return Damping(**_core.typed("damping", given[-1])) if given else None
+
+
+def _put_hoops(frame: dict[str, Any], kinds: Mapping[str, Any]) -> None:
+    """Put the hoops of a drawing in place of its name."""
+    if name := frame.get("panel_hoops"):
+        frame["panel_hoops"] = getattr(kinds.get(name), "ties", name)
 
 
 def _cells_in_plan(
@@ -401,7 +404,6 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
     """Return the building of the groups of a case, whose frames have the nodes of its planes."""
     kinds = _kinds(groups, drawings)
     frame = _core.typed("frame", groups["frame"][-1])
-    damping = groups.get("damping")
     losses = _losses(groups)
     nodes = {group["name"]: group for group in groups.get("node", [])}
     in_plane = {name: group["plane"] for name, group in nodes.items()}
@@ -423,15 +425,10 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
         members.setdefault(plane, []).append(_member(group | cut, kinds[group["kind"]]))
     planes = [_core.typed("plane", group) for group in groups["plane"]]
     count = max(node.floor or 0 for of_plane in nodes_of.values() for node in of_plane)
-    floors: list[dict[str, float]] = [{} for _ in range(count)]
-    for group in groups.get("floor", []):
-        for i, floor in enumerate(floors):
-            if group.get("floor", 0) in (0, i + 1):
-                floor.update(group)
-    values = {
-        name: [floor.get(name, 0.0) for floor in floors]
+    masses, inertia, *centres = (
+        np.broadcast_to(_by_floor(name, count, groups), count)
         for name in ("mass", "inertia", "centre_x", "centre_y")
-    }
+    )
     frames = []
     with notes_off():
         for plane in planes:
@@ -445,10 +442,10 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
     building = Building(
         frames,
         names=[plane["name"] for plane in planes],
-        centres=np.column_stack((values["centre_x"], values["centre_y"])),
-        floor_mass=values["mass"],
-        inertia=values["inertia"],
-        damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
+        centres=np.column_stack(centres),
+        floor_mass=masses,
+        inertia=inertia,
+        damping=_damping(groups),
         **frame,
     )
     rises = {name: group.get("rises_with", "") for name, group in nodes.items()}

@@ -449,12 +449,13 @@ def _planes(frames: Any, names: Sequence[str] | None) -> tuple[Plane, ...]:
         )
     counts: dict[str, int] = {}
     for i, place in enumerate(frames):
-        if not (isinstance(place, tuple) and len(place) in (3, 4) and isinstance(place[0], Frame)):
+        is_place = isinstance(place, tuple) and len(place) in (3, 4)
+        if not is_place or not isinstance(place[0], Frame) or isinstance(place[0], Building):
             raise InputError(
                 f"building: frames[{i}] = {_arguments.shown(place)} must be a tuple "
                 "(frame, angle, arm), or (frame, angle, arm, along) with the begin of its axis"
             )
-        numbers = [_arguments.number(value, f"building: frames[{i}]") for value in place[1:]]
+        numbers = _arguments.finite_vector(place[1:], f"building: frames[{i}]").tolist()
         frame: Frame = place[0]
         if frame.damped:
             raise InputError(
@@ -537,7 +538,8 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
     rises: dict[str, str] = {}
     axial: dict[str, str] = {}
     first: dict[tuple[float, ...], FrameNode] = {}
-    columns: dict[tuple[str, str], Member] = {}
+    columns: dict[tuple[float, ...], list[tuple[float, float, Plane, Member]]] = {}
+    supports = ("fixed", "pinned", "roller")
     # Walls and columns come before the posts, which stand for walls across the plane, so that the
     # axial force is that of the wall.
     for across, plane, (nodes, members) in (
@@ -546,47 +548,60 @@ def _shared(planes: Sequence[Plane], laid: Sequence[Any]) -> tuple[dict[str, str
         if plane.along is None:
             continue
         place_of = {node.name: round((node.x or 0.0) / _ONE_PLACE) for node in nodes}
-        upright = [member for member in members if place_of[member.start] == place_of[member.end]]
+        upright = [
+            member
+            for member in members
+            if place_of[member.start] == place_of[member.end] and not member.kind.after_dead_load
+        ]
         posts = {place_of[member.start] for member in upright if member.kind.ends == "pinned"}
-        at = {}
+        at: dict[str, tuple[float, ...]] = {}
         for node, place in zip(nodes, plane.places([node.x for node in nodes]), strict=True):
             if (place_of[node.name] in posts) is not across:
                 continue
-            steps = np.round(np.array([*place, node.y]) / _ONE_PLACE).tolist()
-            leader = first.setdefault(tuple(steps), node)
-            at[node.name] = leader.name
-            held = node.support in ("fixed", "pinned", "roller")
-            if leader is not node and not (
-                held and leader.support in ("fixed", "pinned", "roller")
-            ):
+            at[node.name] = tuple(np.round(np.array([*place, node.y]) / _ONE_PLACE).tolist())
+            leader = first.setdefault(at[node.name], node)
+            if leader is not node and not (node.support in supports and leader.support in supports):
                 rises[node.name] = leader.name
         for member in upright:
             if member.start not in at:
                 continue
-            other = columns.setdefault((at[member.start], at[member.end]), member)
-            if other.name.split(":")[0] == plane.name:
-                continue
-            if other.name in axial.values():
-                raise InputError(
-                    f"building: column {member.name} is one of three planes, with {other.name}; a "
-                    "column has two"
+            low, high = sorted(at[name][2] for name in (member.start, member.end))
+            others = columns.setdefault(at[member.start][:2], [])
+            for foot, head, other_plane, other in others:
+                if other_plane is plane or foot >= high or head <= low:
+                    continue
+                _check_one_column(
+                    (plane, member), (other_plane, other), (low, high) == (foot, head)
                 )
-            with_it = next(one for one in planes if other.name.startswith(f"{one.name}:"))
-            if abs((plane.angle - with_it.angle + 90.0) % 180.0 - 90.0) < _ONE_LINE:
-                raise InputError(
-                    f"building: columns {other.name} and {member.name} are at one place, in frames "
-                    "along one direction; a column bends once in it: leave one of them out"
-                )
-            stiff = [column.kind.modulus * column.kind.area for column in (member, other)]
-            is_post = (member.kind.ends == "pinned") != (other.kind.ends == "pinned")
-            if abs(stiff[0] - stiff[1]) > _SAME * max(stiff) and not is_post:
-                raise InputError(
-                    f"building: columns {other.name} and {member.name} are at one place, and their "
-                    f"E A are {stiff[1]:.4g} and {stiff[0]:.4g} N; give both the same section, or "
-                    "move one of the frames"
-                )
-            axial[member.name] = other.name
+                if other.name in axial.values() or member.name in axial:
+                    raise InputError(
+                        f"building: column {member.name} is one of three planes, with {other.name};"
+                        " a column has two"
+                    )
+                axial[member.name] = other.name
+            others.append((low, high, plane, member))
     return rises, axial
+
+
+def _check_one_column(one: tuple[Plane, Member], two: tuple[Plane, Member], alike: bool) -> None:
+    """Refuse members of two planes at one place that are not one column."""
+    (plane, member), (other_plane, other) = one, two
+    stiff = [column.kind.modulus * column.kind.area for column in (member, other)]
+    is_post = (member.kind.ends == "pinned") != (other.kind.ends == "pinned")
+    fault = ""
+    if not alike:
+        fault = "they end at different heights; give both frames the same nodes there"
+    elif abs((plane.angle - other_plane.angle + 90.0) % 180.0 - 90.0) < _ONE_LINE:
+        fault = "their frames are along one direction, in which a column bends once; leave one out"
+    elif abs(stiff[0] - stiff[1]) > _SAME * max(stiff) and not is_post:
+        fault = (
+            f"their E A are {stiff[1]:.4g} and {stiff[0]:.4g} N; give both the same section, or "
+            "move one of the frames"
+        )
+    if fault:
+        raise InputError(
+            f"building: columns {other.name} and {member.name} are at one place, and {fault}"
+        )
 
 
 def _held_up(member: Member, shared: set[str]) -> Member:
