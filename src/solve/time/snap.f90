@@ -130,19 +130,19 @@ contains
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(out) :: loss, energy
-      real(wp) :: kinetic
+      real(wp) :: kinetic, potential
 
       call self%find_works(state)
       call state%springs%carry_to(self%step%q1)
       associate (structure => state%motion%structure, work => state%springs%work, &
                  work_before => state%springs%journal%work)
          kinetic = structure%kinetic_energy(state%q, state%v)
+         potential = structure%potential_energy(state%q)
          loss = self%of_loads - self%of_damping &
                 - (total(size(work), work) - total(size(work), work_before)) &
                 - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
-                - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
-         energy = abs(total(size(work), work)) + kinetic &
-                  + of_potential*abs(structure%potential_energy(state%q))
+                - (structure%potential_energy(self%step%q1) - potential)
+         energy = abs(total(size(work), work)) + kinetic + of_potential*abs(potential)
       end associate
    end subroutine find_loss
 

@@ -8,7 +8,7 @@ module rbs_structure_frame_new_frame
    use rbs_structure_frame_element, only: frame_element, element_joint, most_columns
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_structure_frame_numbering, only: order_nodes, order_upward
+   use rbs_structure_frame_numbering, only: order_nodes, order_downward
    use rbs_structure_frame_plan, only: floor_plan
    use rbs_structure_spring_location, only: spring_location, shear, flexure, axial, layer
    use rbs_structure_structure, only: unknown_group, pdelta, lateral, horizontal, vertical, sideways, signals
@@ -215,7 +215,7 @@ contains
       end do
       if (frame%plan%is_given()) then
          allocate (frame%plan%number(3, frame%storeys), source=0)
-         call order_upward(size(node), node%y, order)
+         call order_downward(size(node), node%y, order)
       else
          call order_nodes(size(node), pair, order)
       end if

@@ -4,7 +4,7 @@ module rbs_structure_frame_numbering
    implicit none
    private
 
-   public :: order_nodes, order_upward
+   public :: order_nodes, order_downward
 
 contains
 
@@ -38,8 +38,9 @@ contains
       order = order(nodes:1:-1)
    end subroutine order_nodes
 
-   !> Nodes floor by floor from the base up: rigid floors couple all of theirs.
-   pure subroutine order_upward(nodes, y, order)
+   !> Nodes floor by floor from the top down: rigid floors couple all of theirs, and rows of the band are
+   !> shorter so than from the base up.
+   pure subroutine order_downward(nodes, y, order)
       integer, intent(in) :: nodes
       !> Heights (nodes)
       real(wp), intent(in) :: y(nodes)
@@ -49,10 +50,10 @@ contains
 
       is_numbered = .false.
       do i = 1, nodes
-         order(i) = minloc(y, dim=1, mask=.not. is_numbered)
+         order(i) = maxloc(y, dim=1, mask=.not. is_numbered)
          is_numbered(order(i)) = .true.
       end do
-   end subroutine order_upward
+   end subroutine order_downward
 
    !> The neighbours of each node: those of node i from start(i) on.
    pure subroutine list_neighbours(nodes, pair, start, neighbour)
