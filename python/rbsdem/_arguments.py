@@ -239,9 +239,10 @@ def convert(record: object, who: str) -> None:
     another number stay where they may be. Fields of other types are left to the record.
     """
     kind: type = type(record)
-    for name, make, optional in _conversions(kind):
+    for name, make, optional, plain in _conversions(kind):
         value = getattr(record, name)
-        if not optional or given(value) is not None:
+        # Most values are what they have to be.
+        if type(value) is not plain and not (optional and given(value) is None):
             put(record, **{name: make(value, f"{who}: {name}")})
 
 
@@ -257,8 +258,11 @@ _PLAIN: dict[Any, Callable[[Any, str], Any]] = {
 
 
 @cache
-def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], bool]]:
-    """Return name and conversion of the fields that have one, and whether they may be None."""
+def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], bool, Any]]:
+    """Return name and conversion of the fields that have one, and whether they may be None.
+
+    Last is the type whose values the conversion leaves as they are; None where it looks further.
+    """
     hints = get_type_hints(record)
     conversions = []
     for name in [field.name for field in fields(record)]:
@@ -271,7 +275,7 @@ def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], boo
         if make is None and isinstance(kind, type):
             make = partial(_instance_of, kind)
         if make is not None:
-            conversions.append((name, make, optional))
+            conversions.append((name, make, optional, None if kind is int else kind))
     return conversions
 
 

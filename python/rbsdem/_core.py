@@ -62,8 +62,8 @@ class Statement(NamedTuple):
     """Groups of keys with their values, on their way to or from Fortran.
 
     `text` has a line for each group: its name, then its keys, separated by tabs. ``key`` stands for
-    the next number, ``key:5`` for the next five, ``key=word`` for a text (the module
-    `rbs_bindings_statements`).
+    the next number, ``key:5`` for the next five, ``key=word`` for a text, ``values:5`` for the
+    parameters of the rule of a spring (the module `rbs_bindings_statements`).
     """
 
     text: str
@@ -102,7 +102,7 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
             words.append(f"{key}={text}")
         elif isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.ndim):
             kinds = set(map(type, value))
-            plain = kinds <= _PLAIN and (int not in kinds or all(abs(i) < _EXACT for i in value))
+            plain = kinds <= _PLAIN and (int not in kinds or max(map(abs, value)) < _EXACT)
             items = value if plain else vector(value, f"{name}: {key}").tolist()
             if len(items):
                 words.append(f"{key}:{len(items)}")
@@ -322,6 +322,10 @@ def groups(statement: Statement) -> Iterator[tuple[str, dict[str, Any]]]:
             key, mark, rest = _split_item(item)
             if mark == "=":
                 values[key] = rest
+            elif key == "values":
+                names = [each["name"] for each in keys()["rules"][values["rule"]]["keys"]]
+                listed = zip(names, islice(numbers, int(rest)), strict=True)
+                values |= {name: number for name, number in listed if number != UNSET}
             elif mark == ":":
                 values[key] = list(islice(numbers, int(rest)))
             else:

@@ -10,9 +10,9 @@ module rbs_base_key_visitor
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, bound_type, check_number, find_key, choice_number, choice_name, &
-                            choice_list, real_kind, integer_kind, logical_kind, word_kind, text_kind, &
-                            key_length
+   use rbs_base_keys, only: key_type, bound_type, any_number, check_number, is_inside, find_key, &
+                            choice_number, choice_name, choice_list, real_kind, integer_kind, logical_kind, &
+                            word_kind, text_kind, key_length
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, suggestion
    implicit none
@@ -173,11 +173,7 @@ contains
       !> Whether the value may be missing
       logical, intent(in), optional :: optional
 
-      if (self%mode == putting) then
-         ! Most visits put one number, and make no key for it.
-         if (name == self%wanted) x = self%number(1)
-         return
-      end if
+      if (is_done(self, name, x, bound)) return
       call one_number(self, key_type(name=name, unit=unit, bound=bound, default=x, meaning=meaning, &
                                      optional=is_true(optional)), x)
    end subroutine real_key
@@ -194,8 +190,10 @@ contains
 
       x = unset
       if (is_given(i)) x = i
-      call one_number(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
-                                     meaning=meaning, optional=is_true(optional)), x)
+      if (.not. is_done(self, name, x, bound)) then
+         call one_number(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, default=x, &
+                                        meaning=meaning, optional=is_true(optional)), x)
+      end if
       if (is_given(x)) i = nint(x)
    end subroutine integer_key
 
@@ -207,7 +205,9 @@ contains
       real(wp) :: x
 
       x = merge(1.0_wp, 0.0_wp, l)
-      call one_number(self, key_type(name=name, kind=logical_kind, default=x, meaning=meaning), x)
+      if (.not. is_done(self, name, x, any_number)) then
+         call one_number(self, key_type(name=name, kind=logical_kind, default=x, meaning=meaning), x)
+      end if
       l = abs(x) > 0.0_wp
    end subroutine logical_key
 
@@ -220,8 +220,10 @@ contains
       real(wp) :: x
 
       x = choice
-      call one_number(self, key_type(name=name, kind=word_kind, default=x, choices=choices, &
-                                     meaning=meaning), x)
+      if (self%mode == checking .or. .not. is_done(self, name, x, any_number)) then
+         call one_number(self, key_type(name=name, kind=word_kind, default=x, choices=choices, &
+                                        meaning=meaning), x)
+      end if
       choice = nint(x)
    end subroutine choice_key
 
@@ -235,11 +237,40 @@ contains
 
       if (self%mode == checking) return
       do i = 1, size(keys)
+         if (is_done(self, keys(i)%name, value(i), keys(i)%bound)) cycle
          call one_number(self, keys(i), value(i))
       end do
    end subroutine parameters
 
-   !> A number in the mode of the visit; whole numbers and words too.
+   !> Put or take a number, or check one that is within its bounds, as most visits do: they need no key.
+   logical function is_done(self, name, x, bound)
+      type(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(inout) :: x
+      type(bound_type), intent(in) :: bound
+
+      is_done = self%mode == putting .or. self%mode == taking
+      if (self%mode == putting) then
+         if (is_wanted(self, name)) x = self%number(1)
+      else if (self%mode == taking) then
+         self%taken = self%taken + 1
+         if (is_given(self%number(self%taken))) x = self%number(self%taken)
+      else if (self%mode == checking) then
+         is_done = is_inside(x, bound)
+      end if
+   end function is_done
+
+   !> Whether a key is the one that is put.
+   pure logical function is_wanted(self, name)
+      type(key_visitor), intent(in) :: self
+      character(len=*), intent(in) :: name
+
+      ! Most names differ in their first letter.
+      is_wanted = name(1:1) == self%wanted(1:1)
+      if (is_wanted) is_wanted = name == self%wanted
+   end function is_wanted
+
+   !> A number that is collected, checked or listed; whole numbers and words too.
    subroutine one_number(self, key, x)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -248,11 +279,6 @@ contains
       select case (self%mode)
       case (collecting)
          call append(self, key)
-      case (putting)
-         if (key%name == self%wanted) x = self%number(1)
-      case (taking)
-         self%taken = self%taken + 1
-         if (is_given(self%number(self%taken))) x = self%number(self%taken)
       case (checking)
          if (key%kind /= word_kind) then
             call check_number(x, self%group, key, self%messages, self%sound)
@@ -278,6 +304,10 @@ contains
       integer, intent(in) :: most
       logical, intent(in), optional :: required
 
+      if (self%mode == putting) then
+         if (is_wanted(self, name)) x = self%number
+         return
+      end if
       call number_list(self, key_type(name=name, unit=unit, bound=bound, optional=.not. is_true(required), &
                                       most=most, meaning=meaning), x)
    end subroutine real_list_key
@@ -293,13 +323,16 @@ contains
       logical, intent(in), optional :: required
       real(wp), allocatable :: x(:)
 
+      if (self%mode == putting) then
+         if (is_wanted(self, name)) i = nint(self%number)
+         return
+      end if
       if (allocated(i)) x = real(i, wp)
       call number_list(self, key_type(name=name, kind=integer_kind, unit=unit, bound=bound, &
                                       optional=.not. is_true(required), most=most, meaning=meaning), x)
-      if (allocated(x)) i = nint(x)
    end subroutine integer_list_key
 
-   !> Numbers in the mode of the visit.
+   !> Numbers that are collected, listed or checked.
    subroutine number_list(self, key, x)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -310,8 +343,6 @@ contains
       select case (self%mode)
       case (collecting)
          call append(self, key)
-      case (putting)
-         if (key%name == self%wanted) x = self%number
       case (listing)
          if (allocated(x)) call list_numbers(self, key%name, x)
       case (checking)
@@ -322,6 +353,7 @@ contains
          one = key
          one%optional = .false.
          do i = 1, size(x)
+            if (is_inside(x(i), key%bound)) cycle
             if (size(x) > 1) one%name = trim(key%name)//'('//to_text(i)//')'
             call check_number(x(i), self%group, one, self%messages, self%sound)
          end do
@@ -340,6 +372,9 @@ contains
       type(key_type) :: key
       character(len=:), allocatable :: value
 
+      if (self%mode == putting) then
+         if (.not. is_wanted(self, name)) return
+      end if
       key = key_type(name=name, kind=text_kind, default_text=text, optional=.not. is_true(required), &
                      meaning=meaning)
       if (present(choices)) then

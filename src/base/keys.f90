@@ -13,7 +13,8 @@ module rbs_base_keys
    implicit none
    private
 
-   public :: key_type, bound_type, check_number, bound_text, find_key, choice_number, choice_name, choice_list
+   public :: key_type, bound_type, check_number, is_inside, bound_text, find_key, choice_number, &
+             choice_name, choice_list
 
    !> Kinds of values: real number, whole number, logical, word out of a list of choices, free text.
    character(len=1), parameter, public :: real_kind = 'r', integer_kind = 'i', logical_kind = 'l'
@@ -81,12 +82,7 @@ contains
       character(len=32) :: number
       logical :: finite
 
-      if (ieee_is_finite(x)) then
-         ! The common case first. A NaN is never compared: builds with floating-point traps would stop.
-         if (x > key%bound%least .and. x < key%bound%most .and. &
-             abs(x) > 1.0_wp/beyond_meaning .and. abs(x) < beyond_meaning) return
-         if (key%bound%tiny .and. abs(x) < 1.0_wp) return
-      end if
+      if (is_inside(x, key%bound)) return
       if (key%optional .and. .not. is_given(x)) return
       call check_finite(x, name//': '//trim(key%name), trim(unit_for_message()), messages, finite)
       if (finite) then
@@ -132,6 +128,19 @@ contains
       end function refusal
 
    end subroutine check_number
+
+   !> Whether a number has a meaning and is within its bounds, as most are.
+   elemental logical function is_inside(x, bound)
+      real(wp), intent(in) :: x
+      type(bound_type), intent(in) :: bound
+
+      ! A NaN is never compared: builds with floating-point traps would stop.
+      is_inside = ieee_is_finite(x)
+      if (.not. is_inside) return
+      is_inside = abs(x) < beyond_meaning .and. &
+                  (bound%tiny .or. abs(x) > 1.0_wp/beyond_meaning .or. .not. abs(x) > 0.0_wp)
+      if (is_inside) is_inside = is_within(x, bound)
+   end function is_inside
 
    elemental logical function is_within(x, bound)
       real(wp), intent(in) :: x

@@ -1,8 +1,8 @@
 !> How Python passes a column, a spring or a case: names of keys as text, values as numbers.
 !>
 !> The text has a line for each group: its name, then its keys, separated by tabs. `key` takes the next
-!> number, `key:5` the next five, `key=word` a text. Keys are set by the setter, like those of a case
-!> file.
+!> number, `key:5` the next five, `key=word` a text; `values:5` of a spring are all parameters of its rule
+!> in their order. Keys are set by the setter, like those of a case file.
 module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -64,15 +64,19 @@ contains
          integer :: mark, key_index, count
 
          mark = scan(item//':', '=:')
-         call setter%find(item(:mark - 1), '', key_index, messages)
-         if (key_index == 0) return
-         if (index(item, '=') == mark) then
-            call setter%put_text(key_index, item(mark + 1:), messages)
-            return
-         end if
          count = 1
-         if (mark < len(item)) read (item(mark + 1:), *) count
-         call setter%put_numbers(key_index, number(at + 1:at + count))
+         if (index(item, ':') == mark) read (item(mark + 1:), *) count
+         if (setter%is_spring .and. item(:mark - 1) == 'values') then
+            call setter%put_parameters(number(at + 1:at + count))
+         else
+            call setter%find(item(:mark - 1), '', key_index, messages)
+            if (key_index == 0) return
+            if (index(item, '=') == mark) then
+               call setter%put_text(key_index, item(mark + 1:), messages)
+               return
+            end if
+            call setter%put_numbers(key_index, number(at + 1:at + count))
+         end if
          at = at + count
       end subroutine put_item
 

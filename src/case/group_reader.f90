@@ -50,11 +50,14 @@ module rbs_case_group_reader
       type(shear_record) :: shear
       !> Units of the numbers that are set
       type(unit_system) :: units
-      !> Keys of the open group
+      !> Keys of the open group, collected when one is looked for
       type(key_type), allocatable :: keys(:)
       character(len=16) :: group = ''
       !> Location of the group, for messages: 'case.nml line 4:' or blank
       character(len=80) :: where = ''
+      !> Whether it is a spring or the layers of joints
+      logical :: is_spring = .false.
+      logical, private :: collected = .false.
       type(entry_list), private :: entries
       !> Keys of the rule of the open spring
       type(key_type), allocatable, private :: rule_keys(:)
@@ -62,8 +65,8 @@ module rbs_case_group_reader
       !> Whether each group has been opened before
       logical, private :: seen(size(group_names)) = .false.
    contains
-      procedure :: open, find, put_numbers, put_text, finish
-      procedure, private :: is_spring, collect_keys, visit_open
+      procedure :: open, collect_keys, find, put_numbers, put_parameters, put_text, finish
+      procedure, private :: visit_open
    end type group_reader
 
 contains
@@ -105,27 +108,22 @@ contains
       end if
       ok = messages%count == known
       if (.not. ok) return
-      if (self%is_spring()) then
+      self%collected = .false.
+      self%is_spring = .not. self%of_section .and. any(spring_groups == group)
+      if (self%is_spring) then
          call self%entries%add(group, where, line)
-         self%rule_keys = [key_type ::]
       else
          call self%case%open_group(group)
          if (group == 'drawing' .and. self%case%drawn_at == '') self%case%drawn_at = where
       end if
-      call self%collect_keys()
    end subroutine open
-
-   !> Whether the open group is a spring or the layers of joints.
-   pure logical function is_spring(self)
-      class(group_reader), intent(in) :: self
-
-      is_spring = .not. self%of_section .and. any(spring_groups == self%group)
-   end function is_spring
 
    !> The list of keys of the open group.
    subroutine collect_keys(self)
       class(group_reader), intent(inout) :: self
 
+      self%collected = .true.
+      if (self%is_spring) call keys_of(self%entries%entry(self%entries%count)%spring%rule, self%rule_keys)
       call self%visitor%collect(self%group)
       call self%visit_open()
       self%keys = self%visitor%keys(:self%visitor%count)
@@ -135,7 +133,7 @@ contains
    subroutine visit_open(self)
       class(group_reader), intent(inout) :: self
 
-      if (self%is_spring()) then
+      if (self%is_spring) then
          call self%entries%entry(self%entries%count)%visit(self%visitor, self%rule_keys)
          return
       end if
@@ -157,21 +155,21 @@ contains
    !> parameter of some rule and the rule of the spring is unknown, which is told elsewhere. The rule of a
    !> spring and the shape of a section must be set before the keys that they bring.
    subroutine find(self, name, where, key_index, messages)
-      class(group_reader), intent(in) :: self
+      class(group_reader), intent(inout) :: self
       character(len=*), intent(in) :: name
       !> For messages, may be blank
       character(len=*), intent(in) :: where
       integer, intent(out) :: key_index
       type(message_list), intent(inout) :: messages
       type(key_type), allocatable :: others(:)
-      character(len=len(self%keys%name)) :: names(size(self%keys))
       character(len=:), allocatable :: remedy
       integer :: i
 
+      if (.not. self%collected) call self%collect_keys()
       key_index = find_key(self%keys, name)
       if (key_index > 0) return
       ! A parameter of another rule?
-      do i = 1, merge(size(rule_names), 0, self%is_spring() .and. self%group /= 'layers')
+      do i = 1, merge(size(rule_names), 0, self%is_spring .and. self%group /= 'layers')
          call keys_of(rule_names(i), others)
          if (find_key(others, name) == 0) cycle
          associate (rule => self%entries%entry(self%entries%count)%spring%rule)
@@ -183,8 +181,7 @@ contains
             return
          end associate
       end do
-      names = self%keys%name
-      remedy = suggestion(name, names)
+      remedy = suggestion(name, [self%keys%name])
       if (remedy == '') remedy = '; rbsdem keys '//trim(self%group)//' lists what it has'
       call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'"//remedy)
    end subroutine find
@@ -201,7 +198,7 @@ contains
       if (key_index == ignored) return
       ! The last keys of a spring are the parameters of its rule.
       parameter = key_index - size(self%keys)
-      if (self%is_spring()) parameter = parameter + size(self%rule_keys)
+      if (self%is_spring) parameter = parameter + size(self%rule_keys)
       if (self%units%is_si()) then
          if (parameter > 0) then
             self%entries%entry(self%entries%count)%spring%value(parameter) = number(1)
@@ -214,6 +211,14 @@ contains
       end if
       call self%visit_open()
    end subroutine put_numbers
+
+   !> Set all parameters of the rule of the open spring, in the order of its keys and in SI.
+   subroutine put_parameters(self, number)
+      class(group_reader), intent(inout) :: self
+      real(wp), intent(in) :: number(:)
+
+      self%entries%entry(self%entries%count)%spring%value(:size(number)) = number
+   end subroutine put_parameters
 
    !> Set a key by its index to a word or a text.
    subroutine put_text(self, key_index, given, messages)
@@ -237,13 +242,11 @@ contains
             i = i + 1
          end do
       end if
-      if (self%is_spring() .and. key%name == 'rule') then
-         text = lower(text)
-         call self%entries%entry(self%entries%count)%set_rule(text)
-         call keys_of(text, self%rule_keys)
-         call self%collect_keys()
+      if (self%is_spring .and. key%name == 'rule') then
+         call self%entries%entry(self%entries%count)%set_rule(lower(text))
+         self%collected = .false.
          return
-      else if (self%is_spring() .and. key%kind == word_kind) then
+      else if (self%is_spring .and. key%kind == word_kind) then
          if (choice_number(key, text) > 0) then
             call self%put_numbers(key_index, [real(choice_number(key, text), wp)])
          else
@@ -261,9 +264,8 @@ contains
       call self%visitor%end_check(messages)
       if (self%group == 'units') self%units = self%case%units%system()
       if (key%name /= 'shape') return
-      if (any(shape_names == text)) then
-         call self%collect_keys()
-      else
+      self%collected = .false.
+      if (all(shape_names /= text)) then
          call messages%add_at(self%where, "section: shape = '"//text//"' is not known; it is one of "// &
                               list_of(shape_names))
       end if

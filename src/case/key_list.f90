@@ -42,6 +42,7 @@ contains
       else
          reader%of_section = of_section
          call reader%open(group, '', 0, messages, ok)
+         call reader%collect_keys()
          keys = reader%keys
       end if
    end subroutine group_keys

@@ -28,39 +28,23 @@ module rbs_hysteresis_registry
 
 contains
 
-   !> A rule without parameters yet, and where springs of this rule may be used: some of the words of
-   !> `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule and blanks.
-   subroutine new_rule(name, rule, places)
+   !> A rule without parameters yet; none if the name is not known.
+   subroutine new_rule(name, rule)
       character(len=*), intent(in) :: name
       class(rule_type), allocatable, intent(out) :: rule
-      character(len=places_length), intent(out), optional :: places
-      character(len=places_length) :: where_used
 
-      where_used = ''
       select case (name)
-      case ('elastic');       call enter(elastic_rule(), anywhere)
-      case ('bilinear');      call enter(bilinear_rule(), anywhere)
-      case ('takeda');        call enter(takeda_rule(), in_joints)
-      case ('compression');   call enter(compression_rule(), across_joints)
-      case ('peak_oriented'); call enter(peak_oriented_rule(), in_joints//' '//in_axial)
-      case ('pinching');      call enter(pinching_rule(), in_joints//' '//in_axial)
-      case ('concrete');      call enter(concrete_rule(), across_joints)
-      case ('steel');         call enter(steel_rule(), anywhere)
-      ! Its layers are springs with parameters of their own.
-      case ('layered');       call enter(layered_rule(), in_flexure)
+      case ('elastic');       allocate (elastic_rule :: rule)
+      case ('bilinear');      allocate (bilinear_rule :: rule)
+      case ('takeda');        allocate (takeda_rule :: rule)
+      case ('compression');   allocate (compression_rule :: rule)
+      case ('peak_oriented'); allocate (peak_oriented_rule :: rule)
+      case ('pinching');      allocate (pinching_rule :: rule)
+      case ('concrete');      allocate (concrete_rule :: rule)
+      case ('steel');         allocate (steel_rule :: rule)
+      case ('layered');       allocate (layered_rule :: rule)
       case default
       end select
-      if (present(places)) places = where_used
-
-   contains
-
-      subroutine enter(new, used)
-         class(rule_type), intent(in) :: new
-         character(len=*), intent(in) :: used
-
-         allocate (rule, source=new)
-         where_used = used
-      end subroutine enter
    end subroutine new_rule
 
    !> Parameters of a rule by its name; an empty list if the rule is not known.
@@ -77,18 +61,32 @@ contains
    end subroutine keys_of
 
    !> Whether springs of a rule may be used in a place, one of the words of `rbs_hysteresis_rule`.
-   impure elemental logical function suits(name, place)
+   elemental logical function suits(name, place)
       character(len=*), intent(in) :: name, place
 
       suits = index(' '//places_of(name)//' ', ' '//trim(place)//' ') > 0
    end function suits
 
-   !> The words of all places where springs of a rule may be used; blank if the rule is not known.
-   impure elemental character(len=places_length) function places_of(name) result(places)
+   !> Where springs of a rule may be used: some of the words of `rbs_hysteresis_rule`, separated by blanks;
+   !> blank if the rule is not known.
+   elemental character(len=places_length) function places_of(name) result(places)
       character(len=*), intent(in) :: name
-      class(rule_type), allocatable :: rule
 
-      call new_rule(name, rule, places)
+      select case (name)
+      case ('elastic', 'bilinear', 'steel')
+         places = anywhere
+      case ('takeda')
+         places = in_joints
+      case ('peak_oriented', 'pinching')
+         places = in_joints//' '//in_axial
+      case ('compression', 'concrete')
+         places = across_joints
+      case ('layered')
+         ! Its layers are springs with parameters of their own.
+         places = in_flexure
+      case default
+         places = ''
+      end select
    end function places_of
 
 end module rbs_hysteresis_registry

@@ -6,6 +6,7 @@ module rbs_hysteresis_spring_record
    use rbs_base_check, only: check_finite, check_name
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
+   use rbs_base_keys, only: any_number, is_inside
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
@@ -117,7 +118,6 @@ contains
       type(message_list), intent(inout) :: messages
       type(spring_record) :: layer
       character(len=:), allocatable :: prefix
-      logical :: ok
       integer :: i
 
       if (.not. allocated(self%y)) then
@@ -128,15 +128,17 @@ contains
          call messages%add(name//': one layer has no stiffness against rotation; give at least two')
       end if
       do i = 1, size(self%y)
-         call move_to_line(self%line, self%places_line, name, prefix)
-         call check_finite(self%y(i), prefix//': y of layer '//to_text(i), 'm', messages, ok)
+         if (.not. is_inside(self%y(i), any_number)) then
+            call move_to_line(self%line, self%places_line, name, prefix)
+            call check_finite(self%y(i), prefix//': y of layer '//to_text(i), 'm', messages)
+         end if
+         ! The errors of equal layers have been reported.
+         if (same_as_before(self, i)) cycle
          layer = self%layer(i)
          call move_to_line(self%line, layer%line, name, prefix)
          if (.not. suits(layer%rule, in_layer)) then
             call messages%add(prefix//': layer '//to_text(i)//" has the rule '"//trim(layer%rule)// &
                               "'; it is one of "//list_of(pack(rule_names, suits(rule_names, in_layer))))
-         else if (same_as_before(self, i)) then
-            cycle                                   ! its errors have been reported
          else
             call layer%validate(prefix//': layer '//to_text(i), messages)
          end if

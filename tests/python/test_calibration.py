@@ -337,34 +337,33 @@ def test_interrupt_keeps_the_best(monkeypatch):
     start = COLUMNS["zahn_7"]
     flexure = replace(start.flexure, k_y=4e7, d_y=4e-3)
     test = response(replace(start, flexure=flexure), path(start))
-    calls, whole = [], run_result.cyclic
+    calls, whole = [], run_result.follow
 
-    def interrupted(column, displacement):
+    def interrupted(column, call):
         calls.append(column)
         if len(calls) == 60:
             raise KeyboardInterrupt
-        return whole(column, displacement=displacement)
+        return whole(column, call)
 
-    monkeypatch.setattr(run_result, "cyclic", interrupted)
+    monkeypatch.setattr(run_result, "follow", interrupted)
     fit = quiet(start, test, ["flexure.k_y", "flexure.d_y"])
     assert fit.status == "interrupted"
     assert fit.nrmse < fit.before.nrmse
 
 
 def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
-    whole = run_result.cyclic
+    whole = run_result.follow
 
-    def broken(column, displacement):
-        result = whole(column, displacement=displacement)
+    def broken(column, call):
+        channels, *rest, error, note = whole(column, call)
         if column.shear.k > 4e7:
-            half = displacement.size // 2
             # The last row is a state on the way to the next one.
-            part = replace(result, channels={"force": result.force[: half + 1]})
-            raise SolveError("broken off", part)
-        return result
+            channels["force"] = channels["force"][: call["displacement"].size // 2 + 1]
+            error = SolveError("broken off")
+        return channels, *rest, error, note
 
     test = response(replace(ELASTIC, shear=Elastic(k=5e7)), path(ELASTIC))
-    monkeypatch.setattr(run_result, "cyclic", broken)
+    monkeypatch.setattr(run_result, "follow", broken)
     fit = quiet(ELASTIC, test, ["shear.k"])
     assert fit.failed > 0
     assert 3.9e7 < fit.values["shear.k"] < 4e7

@@ -658,7 +658,7 @@ def names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
 
 def groups_of_kinds(
     names: Mapping[NamedKind, str], drawn: Mapping[Any, dict[str, Any]]
-) -> list[Group]:
+) -> list[Group | _core.Statement]:
     """Return the groups of kinds of members, under their names, with those of `drawn` sections."""
     kinds = [(kind, name) for (_, kind), name in names.items()]
     return placed([entry for kind, name in kinds for entry in kind._groups(name, drawn)])

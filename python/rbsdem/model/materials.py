@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -61,7 +61,7 @@ class Concrete:
 
     def statement(self) -> _core.Statement:
         """Return the keys of the concrete with their values."""
-        return _core.group("concrete", {f.name: getattr(self, f.name) for f in fields(self)})
+        return _core.group("concrete", vars(self))
 
     def stress(self, strain: ArrayLike, tension: Tension = "ts") -> Array:
         """Return the stress of the unconfined concrete.
@@ -134,7 +134,7 @@ class Steel:
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
-        values = {f.name: given(getattr(self, f.name)) for f in fields(self)}
+        values = {name: given(value) for name, value in vars(self).items()}
         return _core.group("steel", {"id": number} | values)
 
     def stress(self, strain: ArrayLike) -> Array:
@@ -225,9 +225,8 @@ class Layout:
         numbers : mapping
             The numbers of the steels.
         """
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        steels = {key: numbers[value] for key, value in values.items() if isinstance(value, Steel)}
-        return _core.group(name, values | steels)
+        steels = {k: numbers[value] for k, value in vars(self).items() if isinstance(value, Steel)}
+        return _core.group(name, vars(self) | steels)
 
     def bars(self, shape: str, depth: float, inset: float) -> list[Bar]:
         """Return the bars in a "rectangle" or a "circle" of a depth; see the two functions."""
@@ -267,7 +266,8 @@ class Layout:
         corner = (_area(self.diameter), self.steel)
         inner = self.between_diameter or self.diameter
         between = (_area(inner), self.between_steel or self.steel)
-        rows = np.linspace(edge, -edge, side // 2 + 2).tolist()
+        step = -2.0 * edge / (side // 2 + 1)
+        rows = [*(i * step + edge for i in range(side // 2 + 1)), -edge]
         bars: list[Bar] = []
         for place, y in enumerate(rows):
             if place in (0, len(rows) - 1):

@@ -272,10 +272,13 @@ class Section(_Fields, ABC):
             _arguments.put(self, bars=_LayoutBars(self._lay_out(inset)))
         else:
             _arguments.put(self, bars=tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
+        if self.layout is not None:
+            self._set_default("bar_diameter", self.layout.diameter)
+            return
         areas = [area for _, area, _ in self.bars if area > 0.0]
         diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
         mean = np.average(diameters, weights=areas) if areas else None
-        self._set_default("bar_diameter", mean if self.layout is None else self.layout.diameter)
+        self._set_default("bar_diameter", mean)
 
     @property
     def laid_out(self) -> bool:

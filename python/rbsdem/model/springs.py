@@ -111,12 +111,20 @@ class Spring:
         **place
             Keys that place the spring: `joint` or `id`.
         """
-        return _core.group(group, place | self._keys)
+        text, numbers = _core.group(group, place)
+        return _core.Statement(f"{text}\t{self._keys.text}", numbers + self._keys.numbers)
 
     @cached_property
-    def _keys(self) -> dict[str, Any]:
-        """Its rule and parameters."""
-        return {"rule": self.rule} | {name: getattr(self, name) for name in _names(self.rule)}
+    def _keys(self) -> _core.Statement:
+        """Its rule and its parameters in their order, a word by its name."""
+        names, words, numbers = _names(self.rule), "", list[float]()
+        for name in names:
+            value = getattr(self, name)
+            if isinstance(value, str):
+                words, value = f"{words}\t{name}={_core.word(value)}", None
+            numbers.append(_core.UNSET if value is None else value)
+        values = f"\tvalues:{len(names)}" if names else ""
+        return _core.Statement(f"rule={self.rule}{values}{words}", numbers)
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs that in series are equivalent to this one.
@@ -247,8 +255,8 @@ def checked_spring(spring: object, name: str, place: str, more: str = "") -> Spr
 
 @cache
 def _names(rule: str) -> tuple[str, ...]:
-    """Return the names of the parameters of a rule, in the order of its class."""
-    return tuple(field.name for field in fields(SPRINGS[rule]) if field.name != "layers")
+    """Return the names of the parameters of a rule, in their order."""
+    return tuple(key["name"] for key in _core.keys()["rules"][rule]["keys"])
 
 
 @cache
@@ -273,24 +281,9 @@ def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
     Spring
         The spring. Whoever makes it has to check it, see `check_springs`.
     """
-    plain = {k: float(v) if isinstance(v, (int, np.floating)) else v for k, v in values.items()}
     spring = object.__new__(kind)
-    spring.__dict__.update(_defaults(kind.rule), **plain)
+    spring.__dict__.update(_defaults(kind.rule), **values)
     return spring
-
-
-def unchecked_joint(layers: Iterable[tuple[float, type[Spring], dict[str, Any]]]) -> Layered:
-    """Make a joint of layers without checking it: places, classes and parameters of its springs.
-
-    Layers with one and the same dictionary of parameters have one spring.
-    """
-    springs: dict[int, Spring] = {}
-    made = []
-    for y, kind, values in layers:
-        if id(values) not in springs:
-            springs[id(values)] = unchecked(kind, **values)
-        made.append((y, springs[id(values)]))
-    return unchecked(Layered, layers=tuple(made))
 
 
 def check_springs(springs: Iterable[Spring]) -> None:
@@ -684,6 +677,10 @@ class Layered(Spring):
     def __repr__(self) -> str:
         return f"Layered({len(self.layers)} layers)"
 
+    def __hash__(self) -> int:
+        # Of two springs alone: those of all layers take long.
+        return hash((*(y for y, _ in self.layers), self.layers[0][1], self.layers[-1][1]))
+
     def _check(self) -> None:
         # The column checks whether the layers can carry its axial load.
         _core.evaluate("check_spring", self._alone(), axial_load=0.0)
@@ -695,13 +692,9 @@ class Layered(Spring):
     def layers_group(self, ids: dict[Spring, int], place: Mapping[str, Any]) -> Group:
         """Return the layers as a group of a case; new springs of layers are added to the ids."""
         # Most layers have one and the same spring: what it is equal to is asked once.
-        known: dict[int, int] = {}
-        numbers = []
-        for _, spring in self.layers:
-            number = known.get(id(spring))
-            if number is None:
-                number = known[id(spring)] = ids.setdefault(spring, len(ids) + 1)
-            numbers.append(number)
+        different = {id(spring): spring for _, spring in self.layers}
+        known = {own: ids.setdefault(spring, len(ids) + 1) for own, spring in different.items()}
+        numbers = [known[id(spring)] for _, spring in self.layers]
         return "layers", {**place, "y": [y for y, _ in self.layers], "spring": numbers}
 
     @cached_property
@@ -760,7 +753,9 @@ def _response(spring: _core.Statement, path: Array, axial_load: float) -> Array:
     return _core.evaluate("spring_response", spring, **histories).values
 
 
-def placed(entries: Iterable[Group | tuple[str, Mapping[str, Any], Spring]]) -> list[Group]:
+def placed(
+    entries: Iterable[Group | tuple[str, Mapping[str, Any], Spring]],
+) -> list[Group | _core.Statement]:
     """Return groups of a case, with the keys of the springs that stand in some, and their layers.
 
     Parameters
@@ -769,15 +764,12 @@ def placed(entries: Iterable[Group | tuple[str, Mapping[str, Any], Spring]]) -> 
         Groups: name and values, and the spring that stands there. Springs of layers follow at the
         end, each once, with their ids.
     """
-    found: list[Group] = []
+    found: list[Group | _core.Statement] = []
     ids: dict[Spring, int] = {}
     for name, place, *springs in entries:
-        found.append((name, place))
-        for spring in springs:
-            found[-1] = name, {**place, **spring._keys}
-            if isinstance(spring, Layered):
-                found.append(spring.layers_group(ids, place))
-    return found + [("layer_spring", {"id": i, **spring._keys}) for spring, i in ids.items()]
+        found += [spring.statement(name, **place) for spring in springs] or [(name, place)]
+        found += [each.layers_group(ids, place) for each in springs if isinstance(each, Layered)]
+    return found + [spring.statement("layer_spring", id=i) for spring, i in ids.items()]
 
 
 #: Parts that a layer stands for: a bar, concrete inside the ties, concrete outside.

@@ -23,7 +23,6 @@ import numpy as np
 
 from rbsdem import _arguments, _package
 from rbsdem._files import Tabular
-from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
@@ -650,8 +649,7 @@ def path_force(column: Column, displacement: Array, *, rig: bool = False) -> Arr
         With the friction of the rig of a test.
     """
     force = np.zeros(displacement.size)
-    with unwarned():
-        found, _ = reached_force(column, displacement)
+    found, _ = reached_force(column, displacement)
     if rig:
         found = found + rig_force(column, displacement[: found.size])
     force[: found.size] = found

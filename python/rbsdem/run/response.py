@@ -161,15 +161,11 @@ def reached_force(column: Structure, displacement: ArrayLike) -> tuple[Array, So
     """Return the lateral forces along a path up to its end or the first that is not finite [N].
 
     The last row of an analysis that stopped is where it failed, and left out; the error is returned
-    with the forces.
+    with the forces. No notes are told.
     """
-    error = None
-    try:
-        force = cyclic(column, displacement=displacement).force
-    except SolveError as stopped:
-        error = stopped
-        force = np.empty(0) if stopped.result is None else stopped.result.force[:-1]
-    force = force[: np.size(displacement)]
+    path = _arguments.vector(displacement, "displacement")
+    channels, _, _, error, _ = follow(column, {"displacement": path})
+    force = channels["force"][: path.size if error is None else -1]
     bad = np.flatnonzero(~np.isfinite(force))
     return (force[: bad[0]] if bad.size else force), error
 
@@ -302,7 +298,7 @@ def time_history(
 
 def _recorded_state(initial: Any) -> Any:
     """Return the record of `initial`: a path as text, of a result its state."""
-    if isinstance(initial, HasEndState):
+    if initial is not None and isinstance(initial, HasEndState):
         return initial.state
     return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
 

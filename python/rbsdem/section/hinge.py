@@ -22,7 +22,7 @@ from rbsdem.model.springs import (
     Part,
     Spring,
     SteelSpring,
-    unchecked_joint,
+    unchecked,
 )
 from rbsdem.section.parameters import ModelParameters
 
@@ -237,51 +237,54 @@ def hinge_joint(
 
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     @cache
-    def concrete(area: float, stress: float, strain: float, softening: float) -> dict[str, Any]:
+    def concrete(area: float, stress: float, strain: float, softening: float) -> ConcreteSpring:
         # The spring of a strip with a strength and the strain at it.
         secant = 1.3 * stress / strain
-        return dict(
+        return unchecked(
+            ConcreteSpring,
             k=max(modulus, secant) * area / concrete_length,
             f_peak=stress * area,
             d_peak=strain * concrete_length,
             k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
+            plastic=given.plastic,
             contact=min(_LARGEST_CONTACT, given.contact),
-            **{name: getattr(given, name) for name in ("plastic", "misfit", "wear", "friction")},
+            misfit=given.misfit,
+            wear=given.wear,
+            friction=given.friction,
         )
 
-    layers: list[tuple[float, type[Spring], dict[str, Any]]] = []
     core_slopes = []
     for gain, pressure in zip(gains, strips.hoop_pressure, strict=True):
         ultimate = 0.004 + 0.14 * pressure / (gain * strength)
         core_slopes.append(
             0.2 * gain * strength / max(ultimate - peak * (1 + 5 * (gain - 1)), 0.002)
         )
-    for strip in strips.core:
-        gain, softening = gains[strip.y > 0], given.core_softening * core_slopes[strip.y > 0]
-        at_peak = gain * strength, peak * (1 + 5 * (gain - 1))
-        layers.append(
-            (strip.y, ConcreteSpring, concrete(round(strip.area, 12), *at_peak, softening))
-        )
-    cover_slope = 0.8 * strength / 0.004
-    softening = given.cover_softening * cover_slope
-    layers += [
-        (strip.y, ConcreteSpring, concrete(round(strip.area, 12), strength, peak, softening))
-        for strip in strips.cover
+    confined = [
+        (gain * strength, peak * (1 + 5 * (gain - 1)), given.core_softening * slope)
+        for gain, slope in zip(gains, core_slopes, strict=True)
     ]
+    cover_slope = 0.8 * strength / 0.004
+    plain = strength, peak, given.cover_softening * cover_slope
+    layers: list[tuple[float, Spring]] = [
+        (strip.y, concrete(round(strip.area, 12), *confined[strip.y > 0])) for strip in strips.core
+    ]
+    layers += [(strip.y, concrete(round(strip.area, 12), *plain)) for strip in strips.cover]
     high = min(axial_load / section.gross_area / 40e6, 1.5)
     slip, growth = given.slip_length * bond, given.isotropic_hardening * _growing(section, ratio)
     buckles = given.buckling > 0 and given.fatigue > 0
 
     @cache
-    def bar(area: float, steel: Steel, pressure: float) -> dict[str, Any]:
+    def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
         fy, fu, hardens = _strength_of(section, steel, given)
         stiffness = steel.es * area / (steel_length + slip)
-        return dict(
+        return unchecked(
+            SteelSpring,
             k=stiffness,
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
             r0=given.r0 * math.exp(given.r0_stress * (high - 0.15)),
-            **{name: getattr(given, name) for name in ("cr1", "cr2")},
+            cr1=given.cr1,
+            cr2=given.cr2,
             isotropic_hardening=growth if hardens else 0.0,
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=_buckling_strain(pressure, ratio) * (steel_length + slip) if buckles else None,
@@ -291,7 +294,7 @@ def hinge_joint(
     for y, area, steel in section.bars:
         hooped = abs(y) >= 0.5 * depth - section.hooped[y > 0]
         pressure = strips.hoop_pressure[y > 0] if hooped else 0.0
-        layers.append((y, SteelSpring, bar(area, steel, pressure)))
+        layers.append((y, bar(area, steel, pressure)))
     centre = section.centroid
     of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
@@ -303,7 +306,7 @@ def hinge_joint(
     stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
     walls = given.wall_stiffness if section.shape == "wall" else 1.0
     return HingeJoint(
-        unchecked_joint(layers),
+        unchecked(Layered, layers=tuple(layers)),
         concrete_length,
         walls * stiffness * (modulus * section.inertia + of_bars),
         walls * given.shear_stiffness * modulus / 2.4 * section.shear_area,

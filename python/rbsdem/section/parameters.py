@@ -91,12 +91,11 @@ class ModelParameters:
     values: Mapping[str, float]
 
     def __post_init__(self) -> None:
-        values = {}
-        for name, value in self.values.items():
-            number = _arguments.number(value, f"parameters: {name}")
-            if not math.isfinite(number):
-                raise InputError(f"parameters: {name} = {number} must be a finite number")
-            values[name] = number
+        values = dict(self.values)
+        for name, value in values.items():
+            if type(value) is not float or not math.isfinite(value):
+                known = f"parameters: {name}"
+                values[name] = _arguments.within(_arguments.number(value, known), known)
         # Each value is an attribute too.
         self.__dict__.update(values, values=values)
 
