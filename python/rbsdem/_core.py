@@ -13,7 +13,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache, lru_cache
+from functools import cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -255,16 +255,6 @@ def evaluate(what: str, statement: Statement | str = "", **named: Any) -> Answer
         error = SolveError if answer.status == _ANALYSIS_FAILED else InputError
         raise error(answer.text)
     return answer
-
-
-def check_law(what: str, text: str, numbers: list[float]) -> None:
-    """Raise `InputError` if the law of a material is not allowed; the same laws come often."""
-    _check_law(what, text, *numbers)
-
-
-@lru_cache
-def _check_law(what: str, text: str, *numbers: float) -> None:
-    evaluate(what, Statement(text, list(numbers)), strain=0.0)
 
 
 class Made:

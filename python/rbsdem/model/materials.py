@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -57,7 +58,7 @@ class Concrete:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "concrete")
-        _core.check_law("concrete_response", *self._law("ts"))
+        _check_law(self)
 
     def statement(self) -> _core.Statement:
         """Return the keys of the concrete with their values."""
@@ -84,11 +85,9 @@ class Concrete:
             If a strain is not a finite number.
         """
         strains = _arguments.finite_vector(strain, "strain", shape="any")
-        stress = _core.evaluate("concrete_response", self._law(tension), strain=strains).values
+        law = self.statement() + _core.group("diagram", {"tension": tension})
+        stress = _core.evaluate("concrete_response", law, strain=strains).values
         return stress.reshape(strains.shape)[()]
-
-    def _law(self, tension: str) -> _core.Statement:
-        return self.statement() + _core.group("diagram", {"tension": tension})
 
 
 @dataclass(frozen=True)
@@ -130,7 +129,7 @@ class Steel:
             # A modulus that is not positive is refused below.
             strain = self.fy / self.es if self.es > 0.0 else 0.0
             _arguments.put(self, eps_sh=Derived(max(0.007, strain)))
-        _core.check_law("steel_response", *self.statement())
+        _check_law(self)
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
@@ -158,6 +157,12 @@ class Steel:
         strains = _arguments.finite_vector(strain, "strain", shape="any")
         stress = _core.evaluate("steel_response", self.statement(), strain=strains).values
         return stress.reshape(strains.shape)[()]
+
+
+@lru_cache(maxsize=1024)
+def _check_law(law: Concrete | Steel) -> None:
+    """Refuse a law that is not allowed; the same ones come often."""
+    law.stress(0.0)
 
 
 #: Diameter of the thickest bar [m], as in the Fortran part.

@@ -409,6 +409,11 @@ class Section(_Fields, ABC):
         """Area of all longitudinal bars [m2]."""
         return sum(area for _, area, _ in self.bars)
 
+    @cached_property
+    def yield_stress(self) -> float:
+        """Largest yield stress of the longitudinal bars [Pa]."""
+        return max(steel.fy for _, _, steel in self.bars)
+
     @property
     def single_bars(self) -> list[tuple[float, float]]:
         """The y and the diameter of every bar [m]; an entry of `bars` may be a row of several."""

@@ -111,20 +111,14 @@ class Spring:
         **place
             Keys that place the spring: `joint` or `id`.
         """
+        (names, words, values), own = _parameters(self.rule), vars(self)
         text, numbers = _core.group(group, place)
-        return _core.Statement(f"{text}\t{self._keys.text}", numbers + self._keys.numbers)
-
-    @cached_property
-    def _keys(self) -> _core.Statement:
-        """Its rule and its parameters in their order, a word by its name."""
-        names, words, numbers = _names(self.rule), "", list[float]()
-        for name in names:
-            value = getattr(self, name)
-            if isinstance(value, str):
-                words, value = f"{words}\t{name}={_core.word(value)}", None
-            numbers.append(_core.UNSET if value is None else value)
-        values = f"\tvalues:{len(names)}" if names else ""
-        return _core.Statement(f"rule={self.rule}{values}{words}", numbers)
+        numbers += [
+            _core.UNSET if (value := own[name]) is None or type(value) is str else value
+            for name in names
+        ]
+        given = "".join([f"\t{name}={_core.word(own[name])}" for name in words])
+        return _core.Statement(f"{text}\trule={self.rule}{values}{given}", numbers)
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs that in series are equivalent to this one.
@@ -254,9 +248,11 @@ def checked_spring(spring: object, name: str, place: str, more: str = "") -> Spr
 
 
 @cache
-def _names(rule: str) -> tuple[str, ...]:
-    """Return the names of the parameters of a rule, in their order."""
-    return tuple(key["name"] for key in _core.keys()["rules"][rule]["keys"])
+def _parameters(rule: str) -> tuple[list[str], list[str], str]:
+    """Return the names of the parameters of a rule, those of words, and the key of their values."""
+    keys = _core.keys()["rules"][rule]["keys"]
+    words = [key["name"] for key in keys if key["kind"] == "word"]
+    return [key["name"] for key in keys], words, f"\tvalues:{len(keys)}" if keys else ""
 
 
 @cache

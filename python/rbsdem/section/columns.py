@@ -422,8 +422,8 @@ def _half(
     _check_lap(checked_section(section), "free")
     model = LayeredModel(section, 0.5 * length, axial_load, 2, values, restrained)
     _check_own(model)
-    if model.notes:
-        warn("; ".join(model.notes))
+    if notes := model.notes:
+        warn("; ".join(notes))
     return model
 
 
@@ -472,8 +472,8 @@ def _layered(
     drawing = LayeredModel(*hinge, _known(model_parameters), *hoops, shear_span)
     _check_own(drawing)
     made = LayeredColumn(height, n=drawing.n, drawing=drawing, **drawing.made, **common)
-    if drawing.notes:
-        warn("; ".join(drawing.notes))
+    if notes := drawing.notes:
+        warn("; ".join(notes))
     return made
 
 

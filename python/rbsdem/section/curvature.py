@@ -184,7 +184,7 @@ def range_warnings(section: Section, height: float, axial_load: float) -> tuple[
     properties = {
         "axial load ratio": axial_load / (section.gross_area * section.concrete.fc),
         "concrete strength": section.concrete.fc,
-        "yield stress of the bars": max(steel.fy for _, _, steel in section.bars),
+        "yield stress of the bars": section.yield_stress,
         "reinforcement ratio": section.steel_ratio,
         "depth": section.depth,
         "shear span over depth": height / section.depth,

@@ -7,8 +7,9 @@ length of yielding in the footing, so that the bars slip out of it. The column a
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, cast
 
 from rbsdem import _core
@@ -158,8 +159,9 @@ class HingeJoint:
         Moment at yield, about [N m].
     yield_work : float
         The same times the rotation of the hinge there [J].
-    gauge : Gauge
-        What the layers stand for, and over which lengths they deform.
+    parts : dict of str to (int, float)
+        Number of the layers of each part, in their order, and the length over which they deform
+        [m].
     limits : dict of str to (float, float)
         Least and largest values of the parameters that have them for this column: beyond them they
         would change nothing.
@@ -171,8 +173,14 @@ class HingeJoint:
     shear_stiffness: float
     yield_moment: float
     yield_work: float
-    gauge: Gauge
+    parts: dict[Part, tuple[int, float]]
     limits: dict[str, tuple[float, float]]
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """What the layers stand for, and over which lengths they deform."""
+        parts = [part for part, (number, _) in self.parts.items() for _ in range(number)]
+        return Gauge(tuple(parts), tuple(self.parts[part][1] for part in parts))
 
 
 def hinge_joint(
@@ -228,17 +236,15 @@ def hinge_joint(
     def by_axial(value: float, exponent: float) -> float:
         return value * math.exp(exponent * (ratio - 0.2))
 
-    yield_stress = max(steel.fy for _, _, steel in section.bars)
-    bond = yield_stress / 1e6 * cast(float, section.bar_diameter)
+    bond = section.yield_stress / 1e6 * cast(float, section.bar_diameter)
     one_length = by_axial(1.0, given.hinge_axial) * (0.08 * length + 0.022 * bond)
     steel_length = by_axial(given.hinge_length, given.hinge_axial) * (0.08 * length + 0.022 * bond)
     steel_length = min(steel_length + given.hinge_depth * depth, longest)
     concrete_length = min(given.compression_length * steel_length, _LONGEST_CONCRETE * length)
 
-    # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
-    @cache
-    def concrete(area: float, stress: float, strain: float, softening: float) -> ConcreteSpring:
-        # The spring of a strip with a strength and the strain at it.
+    def concrete(area: float, law: tuple[float, float, float]) -> ConcreteSpring:
+        # The spring of a strip with a strength, the strain at it and the slope behind it.
+        stress, strain, softening = law
         secant = 1.3 * stress / strain
         return unchecked(
             ConcreteSpring,
@@ -265,15 +271,19 @@ def hinge_joint(
     ]
     cover_slope = 0.8 * strength / 0.004
     plain = strength, peak, given.cover_softening * cover_slope
-    layers: list[tuple[float, Spring]] = [
-        (strip.y, concrete(round(strip.area, 12), *confined[strip.y > 0])) for strip in strips.core
+    # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
+    made: dict[Any, Spring] = {}
+    layers = [
+        (strip.y, _once(made, concrete, round(strip.area, 12), confined[strip.y > 0]))
+        for strip in strips.core
     ]
-    layers += [(strip.y, concrete(round(strip.area, 12), *plain)) for strip in strips.cover]
+    layers += [
+        (strip.y, _once(made, concrete, round(strip.area, 12), plain)) for strip in strips.cover
+    ]
     high = min(axial_load / section.gross_area / 40e6, 1.5)
     slip, growth = given.slip_length * bond, given.isotropic_hardening * _growing(section, ratio)
     buckles = given.buckling > 0 and given.fatigue > 0
 
-    @cache
     def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
         fy, fu, hardens = _strength_of(section, steel, given)
         stiffness = steel.es * area / (steel_length + slip)
@@ -294,15 +304,15 @@ def hinge_joint(
     for y, area, steel in section.bars:
         hooped = abs(y) >= 0.5 * depth - section.hooped[y > 0]
         pressure = strips.hoop_pressure[y > 0] if hooped else 0.0
-        layers.append((y, bar(area, steel, pressure)))
+        layers.append((y, _once(made, bar, area, steel, pressure)))
     centre = section.centroid
     of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
-    moment = _yield_moment(section, axial_load, ratio, yield_stress)
-    lengths = {"core": concrete_length, "cover": concrete_length, "bar": steel_length + slip}
-    numbers: dict[Part, int] = {
-        "core": len(strips.core), "cover": len(strips.cover), "bar": len(section.bars)
-    }  # fmt: skip
-    parts = [part for part, number in numbers.items() for _ in range(number)]
+    moment = _yield_moment(section, axial_load, ratio)
+    parts: dict[Part, tuple[int, float]] = {
+        "core": (len(strips.core), concrete_length),
+        "cover": (len(strips.cover), concrete_length),
+        "bar": (len(section.bars), steel_length + slip),
+    }
     stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
     walls = given.wall_stiffness if section.shape == "wall" else 1.0
     return HingeJoint(
@@ -311,8 +321,8 @@ def hinge_joint(
         walls * stiffness * (modulus * section.inertia + of_bars),
         walls * given.shear_stiffness * modulus / 2.4 * section.shear_area,
         moment,
-        moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
-        Gauge(tuple(parts), tuple(lengths[part] for part in parts)),
+        moment * _yield_curvature(section) * (steel_length + slip),
+        parts,
         {
             "hinge_length": (0.0, (longest - given.hinge_depth * depth) / one_length),
             "hinge_depth": (-math.inf, (longest - given.hinge_length * one_length) / depth),
@@ -325,6 +335,13 @@ def hinge_joint(
             "fatigue": (0.0, 1 / _LEAST_ENDURANCE),
         },
     )
+
+
+def _once(made: dict[Any, Spring], make: Callable[..., Spring], *values: Any) -> Spring:
+    """Return the spring of some values, which is made once."""
+    if values not in made:
+        made[values] = make(*values)
+    return made[values]
 
 
 def _gain(stress: float) -> float:
@@ -361,16 +378,16 @@ def _growing(section: Section, ratio: float) -> float:
     return min(max(ratio / _GROWS_FROM, 0.0), 1.0) if section.shape == "wall" else 1.0
 
 
-def _yield_moment(section: Section, axial_load: float, ratio: float, stress: float) -> float:
+def _yield_moment(section: Section, axial_load: float, ratio: float) -> float:
     """Return the moment at yield (AIJ 1999) [N m]."""
     pressed = max(0.0, 0.5 * axial_load * section.depth * (1 - ratio))
-    return 0.4 * stress * section.steel_area * section.depth + pressed
+    return 0.4 * section.yield_stress * section.steel_area * section.depth + pressed
 
 
-def _yield_curvature(section: Section, stress: float) -> float:
+def _yield_curvature(section: Section) -> float:
     """Return the curvature at yield, about, the mean of both directions [1/m]."""
     depth = 0.5 * (section.effective_depth + section.mirrored.effective_depth)
-    return stress / _ES / (0.65 * depth)
+    return section.yield_stress / _ES / (0.65 * depth)
 
 
 def _least_hardening(section: Section, given: ModelParameters) -> float:

@@ -306,8 +306,8 @@ class LayeredColumn(Column):
             if getattr(self, name) == value:
                 _arguments.put(self, **{name: now.fields_for(self.top)[name]})
         _arguments.put(self, drawing=now)
-        if now.notes:
-            warn("; ".join(now.notes))
+        if notes := now.notes:
+            warn("; ".join(notes))
 
     @property
     def _is_other(self) -> bool:

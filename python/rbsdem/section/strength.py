@@ -814,9 +814,8 @@ def bond_demand(section: Section, length: float) -> float:
     length : float
         Shear span a [m].
     """
-    stress = max(steel.fy for _, _, steel in section.bars) / _MPA
     root = math.sqrt(section.concrete.fc / _MPA)
-    return stress * (section.bar_diameter or 0.0) / (10.0 * root * length)
+    return section.yield_stress / _MPA * (section.bar_diameter or 0.0) / (10.0 * root * length)
 
 
 def _crossing(falling: Callable[[float], float], most: float) -> float:
