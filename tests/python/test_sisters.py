@@ -70,8 +70,12 @@ def test_the_band_moves_and_narrows() -> None:
     np.testing.assert_allclose(after.force, learned.force(PATH))
     assert after.width < before.width
     assert after.peak_force.value > before.peak_force.value
-    ends = [(band.peak_force.upper / band.peak_force.lower) for band in (before, after)]
-    assert ends[1] < ends[0]
+    peaks, works = (
+        [interval.upper / interval.lower for interval in pair]
+        for pair in ((before.peak_force, after.peak_force), (before.energy, after.energy))
+    )
+    assert peaks[1] == pytest.approx(peaks[0], rel=1e-9)
+    assert works[1] < works[0]
 
 
 def test_predictions_with_given_tests(tmp_path) -> None:

@@ -419,8 +419,9 @@ def band(
     features = Features(near, slender(column._drawing.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
     wider, *powers = _beyond(column, scatter)
-    # Single numbers are known less well than the loop: judged by `studies/sisters_table.py`.
-    powers = [math.sqrt(left) * by for by in powers]
+    # Single numbers are known less well than the loop, the largest force no better than before:
+    # judged by `studies/sisters_table.py`.
+    powers[1:] = [math.sqrt(left) * by for by in powers[1:]]
     widen = left * wider * between(scatter.force, features)
     values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
