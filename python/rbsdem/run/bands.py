@@ -492,6 +492,7 @@ def sample(
     return rows
 
 
+@cache
 def _normal_points(number: int) -> Array:
     """Return standard normal numbers from the first Sobol points in three dimensions.
 
