@@ -241,6 +241,7 @@ contains
          do j = 1, i - 1
             if (same(j) == same(i) .and. same_bits(self%y(j), self%y(i))) exit
          end do
+         ! Here j is the first layer of this spring at this place; if there was none before, i itself.
          weight(j) = weight(j) + 1.0_wp
       end do
       joint%y = pack(self%y, weight > 0.0_wp)

@@ -107,6 +107,7 @@ contains
       do i = 1, n
          self%slot(i)%rule => rules%list(rules%of(i))%rule
          associate (rule => self%slot(i)%rule)
+            ! Equal springs often follow each other: the state of the one before is copied.
             before = max(i - 1, 1)
             if (allocated(self%slot(before)%memory) .and. rules%of(i) == rules%of(before) .and. &
                 .not. abs(axial_load(i) - axial_load(before)) > 0.0_wp) then
@@ -371,6 +372,7 @@ contains
          if (self%unload_on_reversal(i) /= -direction) then
             associate (d0 => self%d0(i), f0 => self%f0(i), k => self%k(i))
                far = self%end_toward(i, direction)
+               ! Whether the force is on this line, which may have no end.
                is_there = k > 0.0_wp .and. abs(far) >= unbounded
                if (abs(far) < unbounded) is_there = direction*(f0 + k*(far - d0) - f) >= 0.0_wp
                if (is_there) then

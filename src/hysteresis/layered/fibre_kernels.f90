@@ -106,6 +106,7 @@ contains
          d = w + y(i)*phi
          size_v = abs(v)
          per_v = 1.0_wp/sign(max(size_v, least_rate), v)
+         ! The way to the end behind has the positive sign; a layer that hardly moves never was there.
          behind(i) = max((d - lo(i))*per_v, (d - hi(i))*per_v) + max(0.0_wp, least_rate - size_v)*per_least
          nearest = min(nearest, behind(i))
       end do

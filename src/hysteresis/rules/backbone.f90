@@ -78,6 +78,7 @@ contains
          if (.not. self%strength > 0.0_wp) return
          hardening = 0.0_wp
          if (b%d_cap > b%d_y) hardening = self%strength*(b%f_cap - b%f_y)/(b%d_cap - b%d_y)
+         ! The softening line is f_zero + softening d; at d_res it meets the residual force.
          softening = -b%f_cap/b%d_pc
          f_zero = self%softening*(b%f_cap - softening*b%d_cap)
          d_res = (b%f_res - f_zero)/softening
@@ -96,6 +97,7 @@ contains
             if (self%last == 0 .or. d > self%d(self%last)) call self%add_corner(d, f)
             slope = hardening
          end if
+         ! Where the last line of hardening meets the softening one.
          d_x = (f_zero - self%f(self%last) + slope*self%d(self%last))/(slope - softening)
          ! Without deterioration the cap must equal that of the user to the last bit.
          if (self%strength >= 1.0_wp .and. self%softening >= 1.0_wp) d_x = b%d_cap

@@ -249,6 +249,7 @@ contains
          now%closed = no_turn
          associate (s => now%side, turns => turns_of(now%side))
             do while (turns%count > 0)
+               ! A turn that cannot be reached from here, not even along the virgin slope, is forgotten.
                call turns%list(turns%count)%shift(now%start_at, part%k_0, found)
                if (found) exit
                turns%count = turns%count - 1

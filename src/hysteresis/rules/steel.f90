@@ -255,6 +255,7 @@ contains
          if (self%endurance > 0.0_wp) then
             strength = max(0.0_wp, 1.0_wp - now%worn/(2.0_wp*self%endurance*self%d_y))
          end if
+         ! Plastic reach: how far the deformation has gone both ways, over d_y, beyond the elastic range.
          q = (now%highest - now%lowest)/self%d_y - 2.0_wp
          growth = 0.0_wp
          ahead = unbounded

@@ -139,6 +139,7 @@ contains
       do i = 1, size(run)
          if (control(1) /= 0) return
          associate (one => column(run(i)%column), shaken => motion(run(i)%motion))
+            ! Runs of one column under one motion have one plan; those that lanes take wait for others.
             if (is_new(run, i)) then
                in_lanes = .false.
                call plan_run(one, shaken, plan, error)

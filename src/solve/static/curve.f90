@@ -180,12 +180,14 @@ contains
       real(wp) :: c(4), peak(2), allowance
 
       passes = .false.
+      ! The deformation at both points, and its rates there.
       c = cubic_of(self, i)
       ! An end at infinity is never reached.
       if (side*finish > max(side*c(1), side*c(2)) + beyond_ends*(abs(c(3)) + abs(c(4))) .or. &
           .not. abs(finish) < unbounded) return
       allowance = no_overshoot*(abs(c(2)) + abs(c(2) - c(1)))
       if (i > size(self%near%q)) allowance = allowance + self%digits
+      ! Where the cubic turns in between.
       peak = cubic_at(turns_of(c), c(1), c(2), c(3), c(4))
       passes = side*(c(2) - finish) > allowance .or. &
                any(side*(peak - finish) > max(allowance, on_the_end*abs(finish)))

@@ -97,6 +97,7 @@ contains
       self%stalled_strides = 0
       if (self%equilibrium%varies) then
          self%row = self%row + 1
+         ! With an axial load that varies the path is followed by the share of the way, from 0 to 1.
          self%equilibrium%driven = [self%control, target - self%control]
          self%equilibrium%load = [self%load_now, self%load(self%row) - self%load_now]
          if (.not. any(abs([self%equilibrium%driven(2), self%equilibrium%load(2)]) > 0.0_wp)) return

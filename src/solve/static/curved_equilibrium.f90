@@ -293,6 +293,7 @@ contains
       if (self%by_force) then
          found = self%tangent%positive
          if (.not. found) return
+         ! With the driven quantity (1), and the correction (2).
          self%change(:, 1) = self%right(:, 1) + (self%arm + self%ratio*self%pushed)*self%driven(2)
          self%change(:, 2) = self%residual
          call self%tangent%solve(self%change, found)

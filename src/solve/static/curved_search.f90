@@ -137,6 +137,7 @@ contains
             trial%axial_load = trial%axial_load + equilibrium%ratio*equilibrium%force_correction
             call move_to(self, trial)
             if (with_events) call find_event(self, limit, change)
+            ! Converged, or as near as round-off lets it come.
             share = equilibrium%size_of(change, trial%q - change)
             found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
             if (found) exit

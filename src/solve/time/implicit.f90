@@ -357,6 +357,7 @@ contains
       associate (motion => state%motion, h => self%h, load => self%load, &
                  mean => 0.5_wp*(state%load + self%load))
          do i = lateral, sideways
+            ! Loads of a fixed direction work on the motion; those that lift or press, by their power.
             if (motion%acts(i) .and. any(i == [lateral, horizontal, sideways])) then
                self%of_loads = self%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
             end if

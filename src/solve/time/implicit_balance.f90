@@ -582,6 +582,7 @@ contains
          real(wp) :: of_mass, of_damping
          integer :: i
 
+         ! Velocities and accelerations at the end of the step, per displacement in it.
          of_damping = step%gamma/(step%beta*h)
          associate (motion => state%motion, structure => state%motion%structure)
             of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) &

@@ -412,6 +412,7 @@ contains
       real(wp) :: damping, of_mass, share, per_force
       integer :: i, last
 
+      ! Mass and mass damping per square second of the step; share of the end of the step in the balance.
       damping = merge(self%column%mass_damping, 0.0_wp, state%motion%damped)
       share = 1.0_wp
       associate (by => self%by, h => self%h)

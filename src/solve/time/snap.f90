@@ -63,6 +63,7 @@ contains
          self%anchor(:) = self%step%moved
          call self%resist(0.0_wp)
          call self%step%find_residual(state, self%h, self%load, self%residual)
+         ! Where little resistance is left, an equilibrium without it may be near.
          if (resistance <= 0.1_wp .and. self%residual < 0.3_wp*tried) then
             tried = self%residual
             call self%iterate(state)
@@ -72,6 +73,7 @@ contains
             if (self%converged) exit
          end if
          call self%resist(resistance)
+         ! Else one step further down against the resistance; if it goes too far, against more of it.
          self%wanted = loose
          call self%step%find_residual(state, self%h, self%load, self%residual)
          call self%iterate(state)

@@ -240,6 +240,8 @@ contains
             of%about_centre = of%arm
             if (of%is_single) cycle
             self%place(of%spring + 1) = of%motion + 1
+            ! Layers together are two springs at their centre of stiffness: they open, and turn by a rotation
+            ! times their radius, so that both are lengths.
             sums = stiffness_sums(of%last - of%first + 1, self%y(of%first:of%last), k(of%first:of%last))
             of%centre = sums(2)/sums(1)
             of%radius = sqrt(sum(k(of%first:of%last)*(self%y(of%first:of%last) - of%centre)**2)/sums(1))
@@ -250,6 +252,7 @@ contains
       call self%inner_springs(size(k), k, p, stiffness, turn)
       flexible = 0.0_wp
       do i = 1, self%condensed()
+         ! How far each motion of the ends gives way; `weight` is the stiffness against it alone.
          flexible = flexible + p(:, i)**2/abs(stiffness(i))
       end do
       self%weight = 0.0_wp

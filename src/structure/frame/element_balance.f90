@@ -302,6 +302,7 @@ contains
 
       do j = 1, size(e%joint)
          associate (of => e%joint(j), at => e%joint(j)%spring, i => e%before + e%joint(j)%first)
+            ! A rate is a sum over the motions of the ends; it is round-off beside the sizes of its terms.
             least = round_off_of_rates*sum(abs(tangent%rate(:, at))*size_of)
             if (of%is_single) then
                if (abs(d(i)) < least) d(i) = 0.0_wp

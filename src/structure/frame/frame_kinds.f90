@@ -57,6 +57,7 @@ contains
          m%bending = rigidity(2)
          m%lumped = .true.
          do i = 1, 3
+            ! Curvature of the member in three springs that together bend as it does.
             one = elastic(rigidity(2)/(share(i)*clear))
             if (is_given(kind%yield_moment)) then
                one%rule = 'bilinear'
@@ -149,6 +150,7 @@ contains
       joint = 1
       if (n > 0) joint = m%joint(n) + 1
       if (spring%rule == 'layered') then
+         ! A joint of layers is as many springs at one place.
          layers = size(spring%y)
          m%kind = [m%kind, spread(layer, 1, layers)]
          m%y = [m%y, spring%y]

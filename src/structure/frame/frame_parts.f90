@@ -547,6 +547,7 @@ contains
       stiffest = 0.0_wp
       all_rigid = all([(is_rigid(record%kind(self%member(i)%kind_of), record%spring), &
                         i=1, size(self%member))])
+      ! Of nodes: along x, along y and against rotation.
       held = 0.0_wp
       if (all_rigid) held = stiffness_of_nodes(self%node)
       if (all_rigid .and. .not. any(held > 0.0_wp)) then
@@ -561,6 +562,7 @@ contains
                along = merge(1, 2, abs(b%x - a%x) > abs(b%y - a%y))
             end associate
             if (.not. clear > 0.0_wp) cycle
+            ! Along the member, and against its rotation.
             if (all_rigid) then
                stiffest = max(stiffest, [held(along), held(3 - along)*clear**2 + held(3)])
             else if (.not. (is_rigid(kind, record%spring) .or. is_strut(kind, record%spring))) then
