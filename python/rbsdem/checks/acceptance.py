@@ -573,8 +573,8 @@ def assess(
         d._replace(member=f"{name}:{d.member}", rotation=d.rotation * factors.get(name, 1.0))
         if name
         else d
-        for name, own in frames.items()
-        for d in demands(own, rows)
+        for name, frame in frames.items()
+        for d in demands(frame, rows)
     ]
     if code == "asce_41":
         # Joints are judged by their rotation, and a rigid one has none.

@@ -148,10 +148,10 @@ def check_target(
     shaken: Any = motions
     if of_building and frame.direction % 180.0:
         along = cosine_sine(frame.direction)
-        named = [one.name or str(i) for i, one in enumerate(motions)]
+        named = [motion.name or str(i) for i, motion in enumerate(motions)]
         pairs = [
-            tuple(replace(one, acceleration=part * one.acceleration) for part in along)
-            for one in motions
+            tuple(replace(motion, acceleration=part * motion.acceleration) for part in along)
+            for motion in motions
         ]
         shaken = dict(zip(named, pairs, strict=True))
     runs = ensemble(

@@ -447,10 +447,10 @@ _SHEARED = "shear_yield"
 def _that_lose_their_load(structures: Mapping[str | int, Structure]) -> dict[str | int, Frame]:
     """Return the frames with a member that loses its axial load after a failure in shear."""
     return {
-        name: one
-        for name, one in structures.items()
-        if isinstance(one, Frame)
-        and any(kind.failure_drift is not None for kind in one.named_kinds.values())
+        name: structure
+        for name, structure in structures.items()
+        if isinstance(structure, Frame)
+        and any(kind.failure_drift is not None for kind in structure.named_kinds.values())
     }
 
 
@@ -458,7 +458,7 @@ def _may_fail(runs: Runs, frames: Mapping[str | int, Frame]) -> bool:
     """Return whether members may have failed in shear: by a spring, or at a drift."""
     places = [at for at, name in enumerate(runs.columns) if name in frames]
     sheared = np.isfinite(runs.measures[_SHEARED]) & np.isin(runs.column, places)
-    kinds = (kind for one in frames.values() for kind in one.named_kinds.values())
+    kinds = (kind for frame in frames.values() for kind in frame.named_kinds.values())
     return bool(sheared.any()) or any(kind.shear_drift is not None for kind in kinds)
 
 

@@ -453,7 +453,7 @@ def score_summary(rows: Iterable[Prediction], by: str = "failure_mode") -> DataF
     names = table[by].map(lambda value: "not known" if value is None else str(value))
     groups = [(name, table[names == name]) for name in dict.fromkeys(names)]
     groups.sort(key=lambda group: -len(group[1]))
-    found = []
+    lines = []
     for name, group in [*groups, ("all", table)]:
         line: dict[str, Any] = {by: name, "tests": len(group)}
         line |= {status: int((group["status"] == status).sum()) for status in ("stopped", "failed")}
@@ -461,8 +461,8 @@ def score_summary(rows: Iterable[Prediction], by: str = "failure_mode") -> DataF
             quartiles = group[score].quantile([0.25, 0.5, 0.75])
             ends = ("lower", "median", "upper")
             line |= {f"{score}_{end}": q for end, q in zip(ends, quartiles, strict=True)}
-        found.append(line)
-    return data_frame(found).set_index(by)
+        lines.append(line)
+    return data_frame(lines).set_index(by)
 
 
 # ---- tests that are like a column ---------------------------------------------------------------

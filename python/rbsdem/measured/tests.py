@@ -573,16 +573,16 @@ def _code(code: int | None, length: float | None, axial_load: float | None) -> i
     return code
 
 
-def _pair(given: object, what: str, examples: str) -> tuple[object, object]:
+def _pair(pair: object, what: str, examples: str) -> tuple[object, object]:
     """Return the two values for displacement and force."""
-    if isinstance(given, Mapping):
-        strange = [key for key in given if key not in _QUANTITIES]
+    if isinstance(pair, Mapping):
+        strange = [key for key in pair if key not in _QUANTITIES]
         if strange:
             raise InputError(f"{what}: {strange[0]!r} is neither 'displacement' nor 'force'")
-        return given.get("displacement"), given.get("force")
-    if isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
-        return given[0], given[1]
-    raise InputError(f"{what} = {given!r} must be two, for displacement and force: {examples}")
+        return pair.get("displacement"), pair.get("force")
+    if isinstance(pair, Sequence) and not isinstance(pair, str) and len(pair) == 2:
+        return pair[0], pair[1]
+    raise InputError(f"{what} = {pair!r} must be two, for displacement and force: {examples}")
 
 
 def _columns(given: object, table: NumberTable) -> tuple[int, int]:

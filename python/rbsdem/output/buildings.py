@@ -246,13 +246,16 @@ def _across(result: BuildingResult, plane: Plane, row: int, points: Array) -> Ar
     turned = result.floor_rotation[row]
     moved = cosine * (result.floor_y[row] + turned * x) - sine * (result.floor_x[row] - turned * y)
     return np.array(
-        [np.interp(z, levels, [0.0, *own]) for z, own in zip(points[:, 1], moved, strict=True)]
+        [
+            np.interp(z, levels, [0.0, *motion])
+            for z, motion in zip(points[:, 1], moved, strict=True)
+        ]
     )
 
 
 def _uprights(plane: Plane, storey: int) -> list[Array]:
     """Return the corners of the columns and walls of a frame in plan, below a floor."""
-    frame, found = plane.frame, []
+    frame, corners_of = plane.frame, []
     cosine, sine = plane.direction
     axes = np.array([[cosine, sine], [-sine, cosine]])
     for name, member in frame.geometry.items():
@@ -268,5 +271,5 @@ def _uprights(plane: Plane, storey: int) -> list[Array]:
             width = section.web_width
         centre = _in_space(plane, np.array([[frame.parts.x[member.start], 0.0]]))[0, :2]
         corners = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (depth, width)
-        found.append(centre + corners @ axes)
-    return found
+        corners_of.append(centre + corners @ axes)
+    return corners_of

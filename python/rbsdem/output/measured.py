@@ -172,10 +172,10 @@ def numbers_table(row: Prediction) -> Table:
             rows.append({name: "Share of the test in the band", "Predicted": row.points_within})
     if row.nearest:
         rows.append({name: "Nearest tests"})
-    for one in row.nearest:
-        text = f"{one.specimen.name}, distance {one.distance:.2f}"
-        if one.prediction is not None:
-            nrmse, peak = (one.prediction.score(score) for score in ("nrmse", "peak_ratio"))
+    for neighbour in row.nearest:
+        text = f"{neighbour.specimen.name}, distance {neighbour.distance:.2f}"
+        if neighbour.prediction is not None:
+            nrmse, peak = (neighbour.prediction.score(score) for score in ("nrmse", "peak_ratio"))
             text += f" (NRMSE {nrmse:.3g}, peak {peak:.3g})"
         rows.append({name: text})
     rows += [{name: f"Outside the tests: {remark}"} for remark in row.warnings]

@@ -110,8 +110,8 @@ def scatter_of_tests(*, walls: bool = False) -> Scatter:
     `studies/spread_table.py` finds the numbers on tests that the fit did not see, and prints how
     many points of such tests lie within the bands.
     """
-    given = json.loads(_package.text("wall_spread.json" if walls else "layered_spread.json"))
-    return Scatter(**{name: _frozen(value) for name, value in given.items()})
+    fitted = json.loads(_package.text("wall_spread.json" if walls else "layered_spread.json"))
+    return Scatter(**{name: _frozen(value) for name, value in fitted.items()})
 
 
 def _frozen(value: Any) -> Any:

@@ -218,11 +218,11 @@ def _of_column(result: Any) -> dict[str, LimitState]:
     first: dict[str, LimitState] = {}
     for number, criterion in enumerate(watched):
         if result.reached is None:
-            found = _in_rows(result, path, criterion, joints.index(criterion.joint))
+            state = _in_rows(result, path, criterion, joints.index(criterion.joint))
         else:
-            found = _in_time(result, criterion, *result.reached[number])
-        if found is not None and (found.name not in first or found.time < first[found.name].time):
-            first[found.name] = found
+            state = _in_time(result, criterion, *result.reached[number])
+        if state is not None and (state.name not in first or state.time < first[state.name].time):
+            first[state.name] = state
     return first
 
 
@@ -274,20 +274,20 @@ def _axial_failure(result: Any, first: dict[str, LimitState]) -> list[LimitState
         return []
     assert column.drawing is not None
     section, load, path = column.drawing.section, column.axial_load, result.path
-    drift, found = np.abs(path.displacement) / column.height, []
+    drift, candidates = np.abs(path.displacement) / column.height, []
     if "shear_yield" in first:
         limit, ends = axial_failure_drift(section, load), axial_failure_interval(section, load)
         sheared = path.time >= first["shear_yield"].time
         source = "friction along the shear crack, Elwood and Moehle 2005"
-        found.append((np.flatnonzero((drift >= limit) & sheared), limit, source, ends))
+        candidates.append((np.flatnonzero((drift >= limit) & sheared), limit, source, ends))
     limit = round_axial_failure_drift(section, load)
     ends = ROUND_AXIAL_FAILURE_FACTORS[0] * limit, ROUND_AXIAL_FAILURE_FACTORS[1] * limit
     source = "yield + b of circles, ASCE 41-17, table 10-9"
-    found.append((np.flatnonzero(drift >= limit), limit, source, ends))
-    reached = [one for one in found if one[0].size]
+    candidates.append((np.flatnonzero(drift >= limit), limit, source, ends))
+    reached = [candidate for candidate in candidates if candidate[0].size]
     if not reached:
         return []
-    rows, limit, source, (low, high) = min(reached, key=lambda one: int(one[0][0]))
+    rows, limit, source, (low, high) = min(reached, key=lambda candidate: int(candidate[0][0]))
     state = _state(result, "axial_failure", float(rows[0]), limit, source)
     return [replace(state, lower=low, upper=high)]
 

@@ -43,10 +43,13 @@ def case_schema() -> dict[str, Any]:
 
 def _group(name: str, keys: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the schema of one group."""
-    own: dict[str, Any] = {"type": "object", "properties": {key["name"]: _key(key) for key in keys}}
+    schema: dict[str, Any] = {
+        "type": "object",
+        "properties": {key["name"]: _key(key) for key in keys},
+    }
     if name not in _SPRINGS:
-        return own | {"additionalProperties": False}
-    own["properties"]["rule"]["enum"] = list(_core.keys()["rules"])
+        return schema | {"additionalProperties": False}
+    schema["properties"]["rule"]["enum"] = list(_core.keys()["rules"])
     rules = [
         {
             "if": {"properties": {"rule": {"const": rule}}, "required": ["rule"]},
@@ -54,23 +57,23 @@ def _group(name: str, keys: list[dict[str, Any]]) -> dict[str, Any]:
         }
         for rule, about in _core.keys()["rules"].items()
     ]
-    return own | {"required": ["rule"], "allOf": rules, "unevaluatedProperties": False}
+    return schema | {"required": ["rule"], "allOf": rules, "unevaluatedProperties": False}
 
 
 def _key(key: dict[str, Any]) -> dict[str, Any]:
     """Return the schema of one key; a list where it takes several values."""
-    one: dict[str, Any] = {"type": _TYPES.get(key["kind"], "string")}
+    schema: dict[str, Any] = {"type": _TYPES.get(key["kind"], "string")}
     if key.get("choices"):
-        one["enum"] = key["choices"]
+        schema["enum"] = key["choices"]
     for bound, name in (("least", "inimum"), ("most", "aximum")):
         if bound in key:
             first = "m" if not key.get(f"{bound}_open") else "exclusiveM"
-            one[first + name] = key[bound]
+            schema[first + name] = key[bound]
     unit = f" [{key['unit']}]" if "unit" in key else ""
     about: dict[str, Any] = {"description": key["meaning"] + unit}
     if "default" in key:
         about["default"] = key["default"]
     if "values" in key:
-        many = {"type": "array", "items": one, "maxItems": key["values"]}
-        return {"anyOf": [one, many]} | about
-    return one | about
+        many = {"type": "array", "items": schema, "maxItems": key["values"]}
+        return {"anyOf": [schema, many]} | about
+    return schema | about

@@ -73,10 +73,10 @@ def march(
     structure: Structure, call: Mapping[str, Any], openings: bool = False, motion: bool = False
 ) -> tuple[_core.Run, Array]:
     """March through time, by the keywords of `rbsdem.time_history` with checked arrays."""
-    given = {name: value for name, value in call.items() if value is not None}
-    loads = {name: given.pop(name) for name in HISTORIES if name in given}
-    times, initial, every = given.pop("time"), given.pop("initial", None), given.pop("every", None)
-    settings = settings_of(every, openings, motion, **given)
+    keywords = {name: value for name, value in call.items() if value is not None}
+    loads = {name: keywords.pop(name) for name in HISTORIES if name in keywords}
+    times, initial, every = (keywords.pop(name, None) for name in ("time", "initial", "every"))
+    settings = settings_of(every, openings, motion, **keywords)
     if initial is None or isinstance(initial, Mapping):
         begin, state = _initial_state(initial, structure), None
     else:
@@ -101,10 +101,10 @@ def tell_long(note: str) -> None:
 
 
 def settings_of(
-    every: int | None, openings: bool, motion: bool = False, **given: Any
+    every: int | None, openings: bool, motion: bool = False, **options: Any
 ) -> _core.Statement:
     """Return the groups analysis and output with the settings that are given."""
-    statement = _core.settings({name: v for name, v in given.items() if v is not None})
+    statement = _core.settings({name: v for name, v in options.items() if v is not None})
     if every is None and not openings and not motion:
         return statement
     if every is not None:

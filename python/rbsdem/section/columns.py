@@ -62,11 +62,11 @@ def model_name(model: str, model_parameters: ModelParameters | None = None) -> s
     return f"{model} {_known(model_parameters).label}"
 
 
-def _known(given: ModelParameters | None) -> ModelParameters:
-    if given is None:
+def _known(model: ModelParameters | None) -> ModelParameters:
+    if model is None:
         return parameters()
     remedy = "as of rbsdem.section.parameters()"
-    return _arguments.instance(given, "model_parameters", ModelParameters, remedy)
+    return _arguments.instance(model, "model_parameters", ModelParameters, remedy)
 
 
 @overload

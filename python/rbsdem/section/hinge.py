@@ -187,7 +187,7 @@ def hinge_joint(
     section: Section,
     length: float,
     axial_load: float,
-    given: ModelParameters,
+    model: ModelParameters,
     *,
     restrained: int | None = None,
     round_core: bool = False,
@@ -202,7 +202,7 @@ def hinge_joint(
         From the foot to the lateral load [m].
     axial_load : float
         Compression positive [N].
-    given : ModelParameters
+    model : ModelParameters
         Parameters of the model.
     restrained, round_core
         As for `cut`.
@@ -223,11 +223,11 @@ def hinge_joint(
     depth, cylinder, longest = section.depth, section.concrete.fc, _LONGEST_STEEL * length
     strips = strips_of(section, _STRIPS, restrained=restrained, round_core=round_core)
     modulus = section.concrete_law["ec"]
-    strength = given.concrete_strength * cylinder * (cylinder / 40e6) ** -given.concrete_size
-    peak = 0.002 * given.peak_strain
-    gains = [_gain(given.confinement * stress / cylinder) for stress in strips.confining_stress]
+    strength = model.concrete_strength * cylinder * (cylinder / 40e6) ** -model.concrete_size
+    peak = 0.002 * model.peak_strain
+    gains = [_gain(model.confinement * stress / cylinder) for stress in strips.confining_stress]
     # Beyond what the section carries the exponentials below have no meaning.
-    bars = sum(given.steel_strength * steel.fy * area for _, area, steel in section.bars)
+    bars = sum(model.steel_strength * steel.fy * area for _, area, steel in section.bars)
     of_core = sum(gains[strip.y > 0] * strength * strip.area for strip in strips.core)
     of_cover = strength * sum(strip.area for strip in strips.cover)
     _check(axial_load, bars, bars + of_core + of_cover)
@@ -237,10 +237,10 @@ def hinge_joint(
         return value * math.exp(exponent * (ratio - 0.2))
 
     bond = section.yield_stress / 1e6 * cast(float, section.bar_diameter)
-    one_length = by_axial(1.0, given.hinge_axial) * (0.08 * length + 0.022 * bond)
-    steel_length = by_axial(given.hinge_length, given.hinge_axial) * (0.08 * length + 0.022 * bond)
-    steel_length = min(steel_length + given.hinge_depth * depth, longest)
-    concrete_length = min(given.compression_length * steel_length, _LONGEST_CONCRETE * length)
+    one_length = by_axial(1.0, model.hinge_axial) * (0.08 * length + 0.022 * bond)
+    steel_length = by_axial(model.hinge_length, model.hinge_axial) * (0.08 * length + 0.022 * bond)
+    steel_length = min(steel_length + model.hinge_depth * depth, longest)
+    concrete_length = min(model.compression_length * steel_length, _LONGEST_CONCRETE * length)
 
     def concrete(area: float, law: tuple[float, float, float]) -> ConcreteSpring:
         # The spring of a strip with a strength, the strain at it and the slope behind it.
@@ -252,11 +252,11 @@ def hinge_joint(
             f_peak=stress * area,
             d_peak=strain * concrete_length,
             k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
-            plastic=given.plastic,
-            contact=min(_LARGEST_CONTACT, given.contact),
-            misfit=given.misfit,
-            wear=given.wear,
-            friction=given.friction,
+            plastic=model.plastic,
+            contact=min(_LARGEST_CONTACT, model.contact),
+            misfit=model.misfit,
+            wear=model.wear,
+            friction=model.friction,
         )
 
     core_slopes = []
@@ -266,11 +266,11 @@ def hinge_joint(
             0.2 * gain * strength / max(ultimate - peak * (1 + 5 * (gain - 1)), 0.002)
         )
     confined = [
-        (gain * strength, peak * (1 + 5 * (gain - 1)), given.core_softening * slope)
+        (gain * strength, peak * (1 + 5 * (gain - 1)), model.core_softening * slope)
         for gain, slope in zip(gains, core_slopes, strict=True)
     ]
     cover_slope = 0.8 * strength / 0.004
-    plain = strength, peak, given.cover_softening * cover_slope
+    plain = strength, peak, model.cover_softening * cover_slope
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     made: dict[Any, Spring] = {}
     layers = [
@@ -281,24 +281,24 @@ def hinge_joint(
         (strip.y, _once(made, concrete, round(strip.area, 12), plain)) for strip in strips.cover
     ]
     high = min(axial_load / section.gross_area / 40e6, 1.5)
-    slip, growth = given.slip_length * bond, given.isotropic_hardening * _growing(section, ratio)
-    buckles = given.buckling > 0 and given.fatigue > 0
+    slip, growth = model.slip_length * bond, model.isotropic_hardening * _growing(section, ratio)
+    buckles = model.buckling > 0 and model.fatigue > 0
 
     def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
-        fy, fu, hardens = _strength_of(section, steel, given)
+        fy, fu, hardens = _strength_of(section, steel, model)
         stiffness = steel.es * area / (steel_length + slip)
         return unchecked(
             SteelSpring,
             k=stiffness,
             f_y=fy * area,
-            k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
-            r0=given.r0 * math.exp(given.r0_stress * (high - 0.15)),
-            cr1=given.cr1,
-            cr2=given.cr2,
+            k_post=stiffness * max(_LEAST_HARDENING, model.hardening * (fu - fy) / 0.08 / steel.es),
+            r0=model.r0 * math.exp(model.r0_stress * (high - 0.15)),
+            cr1=model.cr1,
+            cr2=model.cr2,
             isotropic_hardening=growth if hardens else 0.0,
-            endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
+            endurance=max(1 / model.fatigue, _LEAST_ENDURANCE) if model.fatigue > 0 else 0.0,
             d_buckle=_buckling_strain(pressure, ratio) * (steel_length + slip) if buckles else None,
-            buckling=given.buckling if buckles else 0.0,
+            buckling=model.buckling if buckles else 0.0,
         )
 
     for y, area, steel in section.bars:
@@ -313,25 +313,25 @@ def hinge_joint(
         "cover": (len(strips.cover), concrete_length),
         "bar": (len(section.bars), steel_length + slip),
     }
-    stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
-    walls = given.wall_stiffness if section.shape == "wall" else 1.0
+    stiffness = min(_STIFFEST, by_axial(model.stiffness, model.stiffness_axial))
+    walls = model.wall_stiffness if section.shape == "wall" else 1.0
     return HingeJoint(
         unchecked(Layered, layers=tuple(layers)),
         concrete_length,
         walls * stiffness * (modulus * section.inertia + of_bars),
-        walls * given.shear_stiffness * modulus / 2.4 * section.shear_area,
+        walls * model.shear_stiffness * modulus / 2.4 * section.shear_area,
         moment,
         moment * _yield_curvature(section) * (steel_length + slip),
         parts,
         {
-            "hinge_length": (0.0, (longest - given.hinge_depth * depth) / one_length),
-            "hinge_depth": (-math.inf, (longest - given.hinge_length * one_length) / depth),
+            "hinge_length": (0.0, (longest - model.hinge_depth * depth) / one_length),
+            "hinge_depth": (-math.inf, (longest - model.hinge_length * one_length) / depth),
             "compression_length": (0.0, _LONGEST_CONCRETE * length / steel_length),
-            "stiffness": (0.0, _STIFFEST / by_axial(1.0, given.stiffness_axial)),
+            "stiffness": (0.0, _STIFFEST / by_axial(1.0, model.stiffness_axial)),
             "contact": (0.0, _LARGEST_CONTACT),
             "core_softening": (_LEAST_SOFTENING / max(core_slopes), math.inf),
             "cover_softening": (_LEAST_SOFTENING / cover_slope, math.inf),
-            "hardening": (_least_hardening(section, given), math.inf),
+            "hardening": (_least_hardening(section, model), math.inf),
             "fatigue": (0.0, 1 / _LEAST_ENDURANCE),
         },
     )
@@ -361,10 +361,10 @@ def _buckling_strain(confinement: float, ratio: float) -> float:
 
 
 def _strength_of(
-    section: Section, steel: Steel, given: ModelParameters
+    section: Section, steel: Steel, model: ModelParameters
 ) -> tuple[float, float, bool]:
     """Return f_y and f_u of bars [Pa], and whether they harden: those in a short lap do not."""
-    fy, fu = (given.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
+    fy, fu = (model.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
     lapped = section.lapped(steel)
     return (fy, fu, True) if lapped == 1.0 else (lapped * fy, lapped * fy, False)
 
@@ -390,10 +390,10 @@ def _yield_curvature(section: Section) -> float:
     return section.yield_stress / _ES / (0.65 * depth)
 
 
-def _least_hardening(section: Section, given: ModelParameters) -> float:
+def _least_hardening(section: Section, model: ModelParameters) -> float:
     """Return the factor below which no bar hardens less."""
     rise = max((cast(float, steel.fu) - steel.fy) / steel.es for *_, steel in section.bars)
-    rise *= given.steel_strength
+    rise *= model.steel_strength
     return _LEAST_HARDENING * 0.08 / rise if rise > 0 else math.inf
 
 

@@ -463,7 +463,7 @@ def shear_spring(
     length: float,
     axial_load: float,
     stiffness: float,
-    given: ModelParameters,
+    model: ModelParameters,
     joint: HingeJoint | None = None,
     *,
     spans: tuple[float, float] | None = None,
@@ -480,7 +480,7 @@ def shear_spring(
         Compression positive [N].
     stiffness : float
         Shear stiffness before cracking, force over strain [N].
-    given : ModelParameters
+    model : ModelParameters
         Parameters of the model.
     joint : HingeJoint, optional
         The hinge, with whose work the strength decays; without it the strength does not.
@@ -509,7 +509,7 @@ def shear_spring(
     drawn = [(section, first)]
     if first != second or not section.symmetric:
         drawn = [(section, first), (section.mirrored, second)]
-    sides = [_side(each, length, span, axial_load, stiffness, given) for each, span in drawn]
+    sides = [_side(each, length, span, axial_load, stiffness, model) for each, span in drawn]
     span = 0.5 * (first + second)
     lines = {**sides[0].line}
     for side in sides[1:]:
@@ -519,20 +519,20 @@ def shear_spring(
     f_y = sum(side.line["f_y"] for side in sides) / len(sides)
     ties = sum(side.ties for side in sides) / len(sides)
     lambda_s = 0.0
-    if given.shear_endurance > 0.0:
+    if model.shear_endurance > 0.0:
         # Few ties do not hold a crack together, and bars that slip split the cover.
         lasts = min(1.0, max(2.0 * ties / f_y, _FEWEST) ** 2)
         lasts /= max(bond_demand(section, span) / _USUAL_BOND, _LEAST_BOND)
         soonest = max(side.fastest for side in sides) / (stiffness / length * unit)
         # In the slip that the ties would have if they carried the strut, too.
         lasts *= sum(side.worn for side in sides) / sum(side.line["d_y"] for side in sides)
-        lambda_s = least_endurance(given.shear_endurance * lasts, soonest)
+        lambda_s = least_endurance(model.shear_endurance * lasts, soonest)
     lambda_h = s_min = 0.0
-    if joint is not None and given.shear_decay > 0.0:
-        lambda_h = joint.yield_work / given.shear_decay / unit
+    if joint is not None and model.shear_decay > 0.0:
+        lambda_h = joint.yield_work / model.shear_decay / unit
         strut = sum(side.strut for side in sides) / len(sides)
-        crushed = given.shear_decay_strut * sum(side.crushed for side in sides) / len(sides)
-        s_min = min(0.95, (given.shear_decay_ties * ties + strut) / f_y, crushed / f_y)
+        crushed = model.shear_decay_strut * sum(side.crushed for side in sides) / len(sides)
+        s_min = min(0.95, (model.shear_decay_ties * ties + strut) / f_y, crushed / f_y)
     limits = {
         name: (min(s.limits[name][0] for s in sides), max(s.limits[name][1] for s in sides))
         for name in sides[0].limits
@@ -544,9 +544,9 @@ def shear_spring(
         lambda_h=lambda_h,
         s_min=s_min,
         fade=2.0,
-        b0=given.shear_b0,
-        kappa_f=min(given.shear_pinch_force, 1.0),
-        kappa_d=given.shear_pinch_slip,
+        b0=model.shear_b0,
+        kappa_f=min(model.shear_pinch_force, 1.0),
+        kappa_d=model.shear_pinch_slip,
     )
     return spring, limits
 
@@ -598,20 +598,20 @@ def _side(
     span: float,
     axial_load: float,
     stiffness: float,
-    given: ModelParameters,
+    model: ModelParameters,
 ) -> _Side:
     """Return the shear spring of a length with y > 0 in tension; `span` is M/V for its strength."""
     sizes = shear_sizes(section)
     wall = section.shape == "wall"
     strut = axial_strut(section, span, axial_load, shortest=0.0 if wall else SQUAT)
     if wall:
-        constants = {"begins": given.shear_wall_arch, "strut": given.shear_wall_strut}
+        constants = {"begins": model.shear_wall_arch, "strut": model.shear_wall_strut}
         by_theory = wall_shear_strength(section, span, axial_load, **constants)
     else:
         by_theory = column_shear_strength(section, span, axial_load)
     # A section without bars in tension, which has no strength, still needs a spring with one.
     least = 1e-4 * sizes.fc * sizes.gross_area
-    f_y = max(given.shear_strength * by_theory, least)
+    f_y = max(model.shear_strength * by_theory, least)
     by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
     by_concrete = shear_strength_sezen(section, span, axial_load) - by_ties
     f_c = min(max(by_concrete, _LEAST * f_y), 0.9 * f_y)
@@ -620,13 +620,13 @@ def _side(
     cracked = min(max(cracked, _LEAST * whole), 0.9 * whole)
     d_c = f_c / whole
     # Cracks open with what the ties carry; in a column the strut of the axial load needs none.
-    rise, strutted = f_y - f_c, 0.0 if wall else given.shear_strength * strut
+    rise, strutted = f_y - f_c, 0.0 if wall else model.shear_strength * strut
     slip = max((rise - strutted) / cracked, rise / (0.9 * whole))
     d_y = d_c + slip
     f_cap = _RISES * f_y
     # Behind yield it may not go up steeper than before.
     least_rise = 1.01 * (f_cap - f_y) / rise * slip
-    d_cap = d_y + max(given.shear_cap * length, least_rise)
+    d_cap = d_y + max(model.shear_cap * length, least_rise)
     # The column has lost its axial load, and with it the friction in the crack.
     lost = axial_failure_drift(section, axial_load) * length
     above = f_cap * length**3 / (3 * section.concrete_law["ec"] * section.inertia)
@@ -635,13 +635,13 @@ def _side(
     line = {"d_c": d_c, "f_c": f_c, "d_y": d_y, "f_y": f_y, "d_cap": d_cap, "f_cap": f_cap}
     is_round = section.ties is not None and section.ties.is_round
     return _Side(
-        line | {"d_pc": d_pc},
-        (_CIRCLE if is_round else 1.0) * by_ties,
-        strut,
-        sizes.fc * sizes.width * sizes.d,
-        d_c + rise / cracked,
-        f_cap**2 * (1.0 + d_cap / d_pc),
-        {
+        line=line | {"d_pc": d_pc},
+        ties=(_CIRCLE if is_round else 1.0) * by_ties,
+        strut=strut,
+        crushed=sizes.fc * sizes.width * sizes.d,
+        worn=d_c + rise / cracked,
+        fastest=f_cap**2 * (1.0 + d_cap / d_pc),
+        limits={
             "shear_strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
             "shear_cap": (least_rise / length, math.inf),
             "shear_endurance": (0.0, math.inf),

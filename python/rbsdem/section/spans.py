@@ -32,7 +32,7 @@ def beam_spans(start: Pair, end: Pair, length: float, load: float = 0.0) -> tupl
     load : float, optional
         Load w across it, toward y < 0 [N/m].
     """
-    found = []
+    spans = []
     for (hogs, sags), (other_hogs, other_sags) in ((start, end), (end, start)):
         falls = length
         if load > 0.0:
@@ -41,8 +41,8 @@ def beam_spans(start: Pair, end: Pair, length: float, load: float = 0.0) -> tupl
         up = (sags + other_hogs) / length - 0.5 * load * length
         without = sags / (sags + other_hogs) * length
         against = min(sags / up if up > 0.0 else math.inf, max(without, 0.5 * length))
-        found.append((hogs / down, against))
-    return found[0], found[1]
+        spans.append((hogs / down, against))
+    return spans[0], spans[1]
 
 
 def line_spans(
@@ -92,7 +92,7 @@ def line_spans(
             (max(abs(low / shear), _LEAST * each), max(abs(high / shear), _LEAST * each))
             for (low, high, shear), each in zip(moments, clear, strict=True)
         ]
-    found = []
+    spans = []
     for i, (bottom, top) in enumerate(plastic):
         last = i + 1 == len(plastic)
         above = 0.0 if last else plastic[i + 1][0]
@@ -101,5 +101,5 @@ def line_spans(
         whole = max(low + high, 1e-9 * (bottom + top))
         shares = (max(each / whole, _LEAST) for each in (low, high))
         first, second = (clear[i] * share for share in shares)
-        found.append((first, second))
-    return found
+        spans.append((first, second))
+    return spans

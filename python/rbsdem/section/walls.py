@@ -180,10 +180,10 @@ def _foot(
     span: float,
     height: float,
     above: bool,
-    given: ModelParameters | None,
+    model: ModelParameters | None,
 ) -> LayeredModel:
     """Return what the joint of layers at the base of a storey is made from."""
-    values = given or parameters()
+    values = model or parameters()
     if above:
         # Bars go on below: nothing slips.
         values = values.with_values(slip_length=0.0)
@@ -196,7 +196,7 @@ def _storey(
     axial_load: float,
     place: tuple[float, float, float, float],
     foot: tuple[Layered, Gauge] | None,
-    given: ModelParameters | None,
+    model: ModelParameters | None,
 ) -> FrameMember:
     """Return the kind of one storey.
 
@@ -204,7 +204,7 @@ def _storey(
     """
     span, low, high, begins = place
     height, part = high - low, high - begins
-    whole = LayeredModel(section, span, axial_load, 2, given or parameters())
+    whole = LayeredModel(section, span, axial_load, 2, model or parameters())
     flexure: dict[float, Spring] = {} if foot is None else {0.0: foot[0]}
     if part < _SHORTEST * height:
         # All of the storey is part of the joint below.

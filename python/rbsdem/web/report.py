@@ -133,17 +133,21 @@ def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]
             return {"faults": [{"field": "", "text": str(error)}]}
         front = head(data["title"], "", "", None)
         return {"text": one_file(data["title"], data, sheets=(front, "")), "name": "report"}
-    found = answers.solved(cases[0])
-    if found.case is None or found.result is None:
-        return {"faults": found.faults}
+    answered = answers.solved(cases[0])
+    if answered.case is None or answered.result is None:
+        return {"faults": answered.faults}
     title = title_of(cases[0]) or "Frame"
     with paper_units(*_OF_PAGE.get(str(asked.get("units")), ("mm", "kN"))):
         made: list[Sheet] = []
         with suppress(RbsdemError):
-            outcome = judged(found.case, found.result)
+            outcome = judged(answered.case, answered.result)
             for assessment in outcome.assessments[:1]:
                 made = list(of_assessment(assessment, outcome.target))
-        shown = [one for one in made or sheets_of(found.result) if one.figures or not one.beside]
+        shown = [
+            sheet
+            for sheet in made or sheets_of(answered.result)
+            if sheet.figures or not sheet.beside
+        ]
         html = head(title, "", "", None) + "".join(map(html_of, shown))
     page = one_file(title, None, (), (html, ""))
     return {"text": page, "name": "report"}

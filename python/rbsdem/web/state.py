@@ -164,6 +164,7 @@ class Faults:
             owner = begins[1]
         # Of "flexure spring of joint 0" the group
         owner = _OWNERS.get(owner, owner.partition(" ")[0])
+        # What it may be about: the group at its line, a row of bars at its face, those of its name.
         block = _block(self.groups, drawing)
         if line is not None and self.lines:
             places = [max(bisect_right(self.lines, int(line)) - 1, 0)]
@@ -172,6 +173,7 @@ class Faults:
         else:
             places = [i for i in block if self.groups[i][0] == owner]
             places = places or [i for i in block if key and key in self.groups[i][1]]
+        # Of them the one whose value is missing, or the one that the message states.
         stated = _STATED.search(text)
         for i in places:
             value = self.groups[i][1].get(key)
