@@ -96,7 +96,7 @@ def command(monkeypatch, capfd) -> Run:
 
 @pytest.fixture
 def without_figures(monkeypatch) -> None:
-    """Let reports be written without their figures, which take as long as all else together."""
+    """Let reports be written without their figures, which take longer than all else."""
     monkeypatch.setattr("rbsdem.web.sheets._image", lambda draw: "")
 
 

@@ -108,5 +108,5 @@ def test_joint_is_the_reference_to_first_order(path: Array, ratio: float) -> Non
     load = ratio * CAPACITY
     spring = Layered(layers(ConcreteSpring, SteelSpring))
     got = spring.response(path, load)
-    expected = reference.response(load, layers(reference.Concrete, reference.Steel), path, 60)
+    expected = reference.response(load, layers(reference.Concrete, reference.Steel), path, 20)
     assert np.max(np.abs(got - expected)) < 1e-3 * np.max(np.abs(expected))

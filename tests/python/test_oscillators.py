@@ -152,7 +152,7 @@ def collapses_again(motion: rbsdem.GroundMotion, scale: float, drift: float) -> 
             events=events,
             rtol=1e-6,
             atol=1e-9,
-            max_step=2 * motion.dt,
+            max_step=5 * motion.dt,
         )
         t, y = run.t[-1], run.y[:, -1]
         if len(run.t_events[0]):

@@ -263,7 +263,9 @@ def test_targets_are_amplified_by_torsion_of_the_modes():
     )
 
 
-def test_the_report_of_a_building_has_its_frames(tmp_path):
+def test_the_report_of_a_building_has_its_frames(tmp_path, monkeypatch):
+    # Its figures are drawn and not painted, which takes longer than all else.
+    monkeypatch.setattr("rbsdem.web.sheets.figure_bytes", lambda drawn, ending: b"")
     # Masses of a grid in plan are those of its floors, and its frames have none.
     building = plan(floor_load=6e3, mass="from_loads")
     push = rbsdem.pushover(building, displacement=0.01, points=2)
