@@ -312,7 +312,8 @@ def groups(statement: Statement) -> Iterator[tuple[str, dict[str, Any]]]:
             key, mark, rest = _split_item(item)
             if mark == "=":
                 values[key] = rest
-            elif key == "values":
+            elif key == "values" and "rule" in values:
+                # Those of a spring; a loading has values of another kind.
                 names = [each["name"] for each in keys()["rules"][values["rule"]]["keys"]]
                 listed = zip(names, islice(numbers, int(rest)), strict=True)
                 values |= {name: number for name, number in listed if number != UNSET}
