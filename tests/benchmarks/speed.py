@@ -2,9 +2,9 @@
 
     python tests/benchmarks/speed.py [--against PYTHON] [--rounds 3] [--only PATTERN]
 
-Least processor times; `--against` takes the Python interpreter of another version, and both run in
-turns. Ratios to OpenSees are printed where openseespy is installed: the models, loads and steps are
-those of `studies/frames_opensees.py`.
+Least processor times, as a table of `docs/evidence.md` with its date; `--against` takes the Python
+interpreter of another version, and both run in turns. Ratios to OpenSees are printed where
+openseespy is installed: the models, loads and steps are those of `studies/frames_opensees.py`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Callable
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +25,6 @@ import numpy as np
 from benchmark import record_20_s
 from drawn_building import building, fibre_frame, least, section
 from ensembles import predicted
-from rich import box
-from rich.console import Console
-from rich.table import Table
 
 import rbsdem
 
@@ -206,14 +204,15 @@ def main() -> None:
             for name, seconds in json.loads(text).items():
                 found[name] = min(seconds, found.get(name, seconds))
     others = {n: least(run, 1)[0] for n, run in opensees().items() if re.search(given.only, n)}
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("work", "ms", "of the other version", "OpenSees over rbsdem"):
-        table.add_column(heading, justify="left" if heading == "work" else "right")
+    against = ["of the other version"] if given.against else []
+    print(f"{date.today():%d %B %Y}, least of {given.rounds} rounds:\n")
+    print("|", " | ".join(["work", "ms", *against, "OpenSees over rbsdem"]), "|")
+    print("| ---", *["| --:"] * (2 + len(against)), "|")
     for name, seconds in best[0].items():
-        before = f"{seconds / best[1][name]:.2f}" if given.against else ""
+        before = [f"{seconds / best[1][name]:.2f}"] if given.against else []
         ratio = f"{others[name] / seconds:.1f}" if name in others else ""
-        table.add_row(name, f"{1e3 * seconds:.3g}", before, ratio)
-    Console(width=100).print(table)
+        time = f"{float(f'{1e3 * seconds:.3g}'):,.10g}".replace(",", " ")
+        print("|", " | ".join([name, time, *before, ratio]), "|")
 
 
 if __name__ == "__main__":
