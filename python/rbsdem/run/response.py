@@ -106,7 +106,7 @@ def cyclic(
         From event to event (the default), or in leaps from point to point by Newton's method, which
         takes large drawn frames a small part of the time. In a leap every spring follows its rule
         exactly, in one direction. A leap is halved where springs that turn in it may change the
-        force by 3e-4 of the largest one, or where work is missing; a 64th of the way that still
+        force by 1e-4 of the largest one, or where work is missing; a 64th of the way that still
         fails goes by its events. Errors are mostly below 1e-4 of the peak force
         (``studies/random_frames.py --kind leaps``); drops of the force below 2 % of it may be
         passed over. Columns with "finite", under axial loads that vary, or with "small" go from
@@ -336,7 +336,7 @@ def _return(
 
 
 #: Share of the strength that is round-off of none.
-_ROUND_OFF = 1e-12
+_ROUND_OFF = 1e-9
 
 #: Drift of a push-over that is more than a structure of small rotations has.
 _MOST_DRIFT = 1.0
