@@ -679,6 +679,8 @@ GRIDS = [
     ({"eccentricity": (5.0, 5.0)}, "5 per cent is 0.05"),
     ({"columns": {(4, 1, 0): ELASTIC}}, "columns: line_x = 4, but there are 3"),
     ({"beams_x": {(1, 1): ELASTIC}}, "must be three numbers"),
+    ({"columns": {(0, 0, 2): ELASTIC}}, "nothing stands on the ground"),
+    ({"walls": [W]}, "walls = .* must be a dict"),
     ({"floor_load": [1e3] * 3}, "one for each of 2 floors"),
     ({"bays_x": (-1.0,)}, "must be lengths above 0"),
     ({"beams_x": None, "beams_y": None, "floor_load": 6e3}, "no beam around it"),

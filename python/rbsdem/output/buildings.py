@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -228,11 +229,8 @@ def _building_of(
 def _in_space(plane: Plane, points: Array, across: Array | float = 0.0) -> Array:
     """Return points of a frame in space, shape (points, 3), moved across its plane."""
     cosine, sine = plane.direction
-    places = plane.places(points[:, 0]) if plane.along is not None else None
-    if places is None:
-        # Without a place along its axis it begins at the foot of the perpendicular.
-        foot = plane.places([0.0])[0]
-        places = foot + np.outer(points[:, 0], [cosine, sine])
+    # Without a place along its axis it begins at the foot of the perpendicular.
+    places = replace(plane, along=plane.along or 0.0).places(points[:, 0])
     places = places + np.outer(np.broadcast_to(across, len(points)), [-sine, cosine])
     return np.column_stack((places, points[:, 1]))
 

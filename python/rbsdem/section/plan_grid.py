@@ -228,21 +228,19 @@ class PlanDrawing:
 
     def weights(self) -> Weights:
         """Return the loads of beams and nodes, and the masses that they are of."""
-        weights = Weights(self)
+        weights, heavy = Weights(self), CONCRETE_WEIGHT * self.self_weight
         for k, (dead, live) in enumerate(zip(self.floor_load, self.live_load, strict=True), 1):
             weights.put_panels(k, dead + self.live_share * live)
         for line in self.lines:
             columns, beams, _ = self.cells(line)
             for (i, k), beam in beams.items():
-                facade = beam is not None and self.edge_load[k - 1]
-                load = self.edge_load[k - 1] if facade and self.beside(line, i, k) == 1 else 0.0
-                if self.self_weight:
-                    load += CONCRETE_WEIGHT * _area(beam)
-                weights.put_beam(line, i, k, load)
-            for (i, k), column in columns.items() if self.self_weight else ():
+                at_edge = beam is not None and self.beside(line, i, k) == 1
+                edge = self.edge_load[k - 1] if at_edge else 0.0
+                weights.put_beam(line, i, k, edge + heavy * _area(beam))
+            for (i, k), column in columns.items():
                 # A column of two lines weighs in that along x.
                 if line.along == "x" or isinstance(column, WallSection):
-                    half = 0.5 * CONCRETE_WEIGHT * _area(column) * self.storeys[k - 1]
+                    half = 0.5 * heavy * _area(column) * self.storeys[k - 1]
                     weights.put_column(line, i, k, half)
         return weights
 
@@ -313,6 +311,11 @@ class PlanDrawing:
             if any(members[1].values())
             or any(kind is not None and not _is_post(kind) for kind in members[0].values())
         }
+        at_ground = (
+            kind for columns, _, _ in cells.values() for (_, k), kind in columns.items() if k == 1
+        )
+        if all(kind is None for kind in at_ground):
+            raise InputError("building: nothing stands on the ground; give columns of storey 1")
         of_building = weights.masses() | {"names": [line.name for line in cells]}
 
         def assembled(drawn: bool, **about: Any) -> Any:
