@@ -647,6 +647,11 @@ def test_frames_of_a_grid_need_not_stand_by_themselves():
     assert sum(feet) == pytest.approx(90.0 * 12e3, rel=1e-12)
     again = case_of_text(building.to_namelist(springs=True)).column
     assert again == building
+    low = rbsdem.Building.grid(
+        [3.0], [6.0, 4.0], [5.0], columns={(0, 0, 0): ELASTIC, (2, 0, 0): None}, beams_x=ELASTIC,
+        beams_y=ELASTIC, floor_mass=1e4,
+    )  # fmt: skip
+    assert case_of_text(low.to_namelist(springs=True)).column == low
     cut = rbsdem.pushover(again, drift=0.01, points=2).frame("y-2")
     np.testing.assert_array_equal(cut.storey_shear, secondary.storey_shear)
     with pytest.raises(rbsdem.InputError, match="parts that nothing ties"):

@@ -71,7 +71,7 @@ contains
       if (.not. record%is_part) call check_held(self%node, self%member, messages)
       if (messages%count > known) return
       call choose_top(self, record, messages)
-      call push(self, record, messages)
+      if (.not. record%is_part) call push(self, record, messages)
    end subroutine find
 
    !> Nodes, columns and beams of the grid.
