@@ -39,7 +39,7 @@ module rbs_solve_static_straight
    !> Shortest leap, as a share of the way to a target, and most trials of one. Shares of the largest force by
    !> whose work and by which a leap may be wrong.
    real(wp), parameter :: shortest_leap = 1.0_wp/64.0_wp, missing_work = 1.0e-2_wp, missing_turns = 1.0e-4_wp
-   integer, parameter :: most_trials = 24
+   integer, parameter :: most_trials = 12
 
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
