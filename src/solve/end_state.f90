@@ -73,6 +73,7 @@ contains
       is_given = self%stream%count > 0
    end function is_given
 
+   !> Save or restore all components, whichever the stream is set to.
    pure subroutine serialize_checkpoint(self, stream)
       class(checkpoint_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -100,6 +101,7 @@ contains
       type(spring_array), intent(inout) :: springs
       real(wp) :: first(head)
 
+      ! Places 4 and 5 are for the check sum, which `finish_saving` puts there.
       first = 0.0_wp
       first(1) = format
       first(2:3) = stamp_of(structure)
@@ -112,11 +114,13 @@ contains
       call springs%serialize(self%stream)
    end subroutine start_saving
 
-   !> The state is whole. One with a number that is not finite is not kept: no analysis could begin in it.
+   !> The state is whole: put its check sum into the head. A state with a number that is not finite is
+   !> dropped, since no analysis could begin in it.
    subroutine finish_saving(self)
       class(end_state), intent(inout) :: self
 
       if (.not. all(ieee_is_finite(self%stream%value(:self%stream%count)))) then
+         ! An empty stream is no state.
          self%stream%count = 0
          return
       end if
@@ -137,6 +141,7 @@ contains
                              'damaged; run the first analysis again')
             return
          end if
+         ! A check sum is never negative: with a number that is not finite none fits.
          expected = -1.0_wp
          if (all(ieee_is_finite(value(:count)))) call find_check_sum(value(head + 1:count), expected)
          if (abs(value(1) - format) > 0.0_wp .and. ieee_is_finite(value(1))) then
@@ -189,7 +194,8 @@ contains
       end if
    end subroutine restore
 
-   !> Two numbers that differ between structures with other springs or sizes.
+   !> Two numbers that differ between structures with other springs or sizes: a hash of the lengths and of the
+   !> rules with their parameters, or the two numbers that the structure keeps, if it does.
    function stamp_of(structure) result(stamp)
       class(structure_type), intent(in) :: structure
       real(wp) :: stamp(2)
@@ -200,6 +206,7 @@ contains
          stamp = structure%stamp
          return
       end if
+      ! Any seed but 0 serves.
       hash = 88172645463325252_int64
       seen = 0
       do i = 1, size(structure%length)
@@ -208,6 +215,7 @@ contains
       do i = 1, size(structure%rules%of)
          associate (of => structure%rules%of(i))
             call mix(hash, real(of, wp))
+            ! Springs in a row with the same rule need its parameters once.
             if (of == seen) cycle
             seen = of
             call mix_rule(hash, structure%rules%name(of), structure%rules%list(of)%rule)
@@ -216,8 +224,9 @@ contains
       call split(hash, stamp)
    end function stamp_of
 
-   !> The name of a rule and its parameters, those of layers too.
+   !> Mix the name of a rule and its parameters into a hash, those of the layers of a joint too.
    recursive subroutine mix_rule(hash, name, rule)
+      !> The hash, which gets the parameters
       integer(int64), intent(inout) :: hash
       character(len=*), intent(in) :: name
       class(rule_type), intent(in) :: rule
@@ -248,13 +257,15 @@ contains
       end select
    end subroutine mix_rule
 
-   !> Check sum of a list, by which a state that was changed or cut off is refused.
+   !> Check sum of a list, two whole numbers, by which a state that was changed or cut off is refused.
    pure subroutine find_check_sum(value, total)
       real(wp), intent(in) :: value(:)
+      !> Two halves of a hash
       real(wp), intent(out) :: total(2)
       integer(int64) :: hash
       integer :: i
 
+      ! Any seed but 0 serves.
       hash = 1442695040888963407_int64
       do i = 1, size(value)
          call mix(hash, value(i))
@@ -262,11 +273,13 @@ contains
       call split(hash, total)
    end subroutine find_check_sum
 
-   !> Marsaglia's xorshift (J. Stat. Softw. 8 (2003) 14), which has no overflow.
+   !> Mix a number into a hash by Marsaglia's xorshift (J. Stat. Softw. 8 (2003) 14), which has no overflow.
    pure subroutine mix(hash, x)
+      !> The hash, which gets the number
       integer(int64), intent(inout) :: hash
       real(wp), intent(in) :: x
 
+      ! Adding zero makes -0 the same as 0.
       hash = ieor(hash, transfer(x + 0.0_wp, hash))
       hash = ieor(hash, ishft(hash, 13))
       hash = ieor(hash, ishft(hash, -7))

@@ -16,16 +16,19 @@ module rbs_solve_line_search
 
 contains
 
-   !> The next trial.
+   !> The next trial: where the straight line through the values at both ends vanishes.
    pure real(wp) function next(self)
       class(false_position), intent(in) :: self
 
       next = self%low + (self%high - self%low)*self%at_low/(self%at_low - self%at_high)
    end function next
 
-   !> Take a value into account; it is positive on the side of the low end.
+   !> Take the value at a trial into account: the trial takes the place of the end whose value has the same
+   !> sign, low where it is positive. The value at the end that stays is halved (Illinois), so that this end
+   !> moves soon too.
    pure subroutine narrow(self, x, value)
       class(false_position), intent(inout) :: self
+      !> The trial, and the function there
       real(wp), intent(in) :: x, value
 
       if (value > 0.0_wp) then

@@ -29,6 +29,7 @@ module rbs_solve_task
       integer, pointer :: control => null()
       !> Seconds by the clock after which the run ends; `unset`: it does not
       real(wp) :: most_seconds = unset
+      !> Count of the clock when `stops` was asked first, -1 before
       integer(int64), private :: begun = -1_int64
       !> The state to begin in, empty: virgin; and the state at the end, if it is asked for
       type(end_state) :: before, after
@@ -48,7 +49,8 @@ contains
       resumes = self%before%is_given()
    end function resumes
 
-   !> Whether the run ends here, by another thread or by the clock. Rows up to here are kept.
+   !> Whether the run ends here, because another thread has asked for it or because its seconds by the clock
+   !> are over, which are counted from the first call. Rows up to here are kept.
    logical function stops(self)
       class(task_type), intent(inout) :: self
       integer(int64) :: now, rate
@@ -63,7 +65,8 @@ contains
       self%summary%stopped = self%summary%stopped .or. stops
    end function stops
 
-   !> Whether a word is set that other threads may change at any time.
+   !> Whether a word is set that other threads may change at any time: `volatile`, so that it is read anew
+   !> each time.
    logical function is_set(word)
       integer, intent(inout), volatile :: word
 

@@ -86,10 +86,12 @@ contains
       end do
    end subroutine make_column
 
-   !> Make the frame of a case.
+   !> Make the frame of a case, put its dead load on it, and find what needs its modes: modal damping and the
+   !> pattern of the lateral load.
    subroutine make_frame(case, frame, before, error)
       type(case_record), intent(inout) :: case
       type(frame_type), intent(inout) :: frame
+      !> State under the dead load, in which every analysis begins; empty: there is none
       type(end_state), intent(out) :: before
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
@@ -208,6 +210,7 @@ contains
       ! Pivots behind the first that is lost are made of it.
       lost = matrix%triangle(1, :)*matrix%band(1, :)
       i = max(1, findloc(lost > 0.0_wp .and. lost < most_lost, .false., dim=1))
+      ! Unknown i is a motion (1: x, 2: up, 3: turn) of a node.
       at = findloc(frame%number, i)
       ! The beams of a node behind a panel
       if (at(2) == 0) at = [3, frame%part(i)]
@@ -224,6 +227,7 @@ contains
 
    contains
 
+      !> Factor the initial stiffness of the frame with the present tangents of its elements.
       subroutine factor_stiffness()
 
          band = 0.0_wp

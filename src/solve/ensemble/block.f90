@@ -32,12 +32,14 @@ module rbs_solve_ensemble_block
 
 contains
 
-   !> Effort of a run of each motion: expected seconds, within a factor of three (motions), and whether
-   !> lanes take it. Stops at the first motion that the column cannot be run with.
+   !> Effort of a run of each motion: expected seconds, within a factor of three (motions), and whether lanes
+   !> take it. It stops with an error at the first motion that the column cannot be run with.
    subroutine plan_column(column, motion, seconds, in_lanes, error)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion(:)
+      !> Of a run of each motion: expected duration [s] (motions)
       real(wp), intent(out) :: seconds(:)
+      !> Whether lanes take a run of each motion (motions)
       logical, intent(out) :: in_lanes(:)
       type(error_type), allocatable, intent(out) :: error
       type(time_plan) :: plan
@@ -51,6 +53,7 @@ contains
          seconds(j) = expected_seconds(column%structure, plan)
          in_lanes(j) = takes_lanes(column, plan, motion(j)%time)
       end do
+      ! The state to begin in is tried once, with the motion planned last.
       call check_start(column, motion(size(motion)), plan, error)
    end subroutine plan_column
 
@@ -59,6 +62,7 @@ contains
    pure logical function takes_lanes(of_runs, plan, time)
       type(ensemble_column), intent(in) :: of_runs
       type(time_plan), intent(in) :: plan
+      !> Times of the motion [s]
       real(wp), intent(in) :: time(:)
       integer :: i
 
@@ -87,10 +91,12 @@ contains
       takes_lanes = .true.
    end function takes_lanes
 
-   !> Whether runs of a column can begin in the state that it is given.
+   !> Whether runs of a column can begin in the state that it is given; nothing to check where they begin at
+   !> rest.
    subroutine check_start(column, motion, planned, error)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion
+      !> Plan of a run under the motion, of which a copy is used: taking up a state may change it
       type(time_plan), intent(in) :: planned
       type(error_type), allocatable, intent(out) :: error
       type(end_state) :: before
@@ -106,7 +112,7 @@ contains
       call resume_state(state, column%structure, loads, before, plan, checkpoint, error)
    end subroutine check_start
 
-   !> The state that runs of a column begin in, if it is given one.
+   !> Copy the state that runs of a column begin in, if it is given one; else `before` stays empty.
    pure subroutine take_before(column, before)
       type(ensemble_column), intent(in) :: column
       type(end_state), intent(inout) :: before
@@ -116,15 +122,19 @@ contains
       before%stream%count = size(column%before)
    end subroutine take_before
 
-   !> Run them all.
+   !> Run all runs: those that lanes cannot take one after the other, and then the others in lanes, or one
+   !> after the other where they are few.
    subroutine run_block(column, motion, run, level, result, control)
       type(ensemble_column), intent(in) :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
-      !> Of the kernel: 0 for the fastest, see `chosen_kernel`; `without_lanes`
+      !> Kernel of the lanes: 0: the fastest that the processor has; 1, 2 or 3: at the most that of the
+      !> baseline, of AVX2, of AVX-512; `without_lanes`: no run in lanes
       integer, intent(in) :: level
+      !> One for each run; that of a run that was not started stays as it is
       type(run_result), intent(inout) :: result(:)
-      !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done
+      !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done,
+      !> which each run here adds to
       integer, intent(inout), volatile :: control(2)
       type(lane_task), allocatable :: task(:), others(:)
       logical, allocatable :: together(:)
@@ -164,6 +174,7 @@ contains
       ! The columns in lanes all have damping or none has, and one method.
       task = task(:tasks)
       do while (size(task) > 0)
+         ! Runs that may share lanes with the first; the others wait for the next round.
          allocate (together(size(task)))
          do i = 1, size(task)
             together(i) = task(i)%plan%method == task(1)%plan%method .and. &
@@ -181,14 +192,16 @@ contains
       end do
    end subroutine run_block
 
-   !> Runs that lanes could take, one after the other.
+   !> Runs that lanes could take, one after the other: there are too few of them to be faster in lanes.
    subroutine run_singly(column, motion, run, task, result, control)
       type(ensemble_column), intent(in) :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
+      !> The runs to be taken, by their places in `run` and `result`
       type(lane_task), intent(in) :: task(:)
       type(run_result), intent(inout) :: result(:)
-      !> See `run_block`
+      !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done,
+      !> which each run here adds to
       integer, intent(inout), volatile :: control(2)
       type(time_plan) :: plan
       type(error_type), allocatable :: error
@@ -204,7 +217,7 @@ contains
       end do
    end subroutine run_singly
 
-   !> Whether the column or the motion of a run is another one than before.
+   !> Whether run i has another column or another motion than the run before it; true of the first run.
    pure logical function is_new(run, i)
       type(run_type), intent(in) :: run(:)
       integer, intent(in) :: i
@@ -213,7 +226,8 @@ contains
       if (.not. is_new) is_new = run(i)%column /= run(i - 1)%column .or. run(i)%motion /= run(i - 1)%motion
    end function is_new
 
-   !> Plan the runs of a column under a motion, by the run that does not scale it.
+   !> Plan the runs of a column under a motion. The plan is that of the motion as it is given, and serves
+   !> whatever factor scales it. A column with a fault has no plan but its error.
    subroutine plan_run(column, motion, plan, error)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion
@@ -229,13 +243,14 @@ contains
       call plan_dynamic(column%structure, column%analysis, motion%time, loads, plan, error)
    end subroutine plan_run
 
-   !> One run by itself.
+   !> Run a column under a motion by the analysis of a single case, and collect its fate and measures.
    subroutine run_alone(column, motion, scale, plan, unplanned, result)
       type(ensemble_column), intent(in) :: column
       type(ensemble_motion), intent(in) :: motion
+      !> Factor of the accelerations
       real(wp), intent(in) :: scale
       type(time_plan), intent(in) :: plan
-      !> Why there is no plan
+      !> Why there is no plan, with which the run fails; not allocated: there is one
       type(error_type), allocatable, intent(in) :: unplanned
       type(run_result), intent(inout) :: result
       type(loads_type) :: loads
@@ -257,6 +272,7 @@ contains
       call take_before(column, task%before)
       call run_dynamic(column%structure, column%analysis, plan, motion%time, loads, at_rest, task, error, &
                        monitor)
+      ! Measures of a run that the clock has stopped early would mislead: it counts as failed.
       if (task%summary%stopped .and. .not. allocated(error)) then
          call fatal_error(error, analysis_failed, task%summary%remark)
       end if

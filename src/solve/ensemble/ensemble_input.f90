@@ -52,7 +52,8 @@ module rbs_solve_ensemble_ensemble_input
 
 contains
 
-   !> The motion as loads, its accelerations times a factor.
+   !> The motion as loads of an analysis: accelerations of the ground times a factor, along x and, if there
+   !> are any, along y.
    pure type(loads_type) function loads(self, scale)
       class(ensemble_motion), intent(in) :: self
       real(wp), intent(in) :: scale

@@ -58,10 +58,10 @@ module rbs_solve_ensemble_lane_arrays
       !> Result of an implicit step for lanes whose springs leave their lines: the motion of the
       !> body moves on its lines, the work of the residual on that, and the acceleration of the ground
       real(wp) :: trial(lanes, 4) = 0.0_wp
-      !> Inverse of the tangent of an implicit step (11, 12, 21, 22), and 1/(beta h**2); of RK4 see
-      !> `resistance_per_velocity`
+      !> Inverse of the tangent of an implicit step (11, 12, 21, 22), and 1/(beta h**2); of RK4 the
+      !> acceleration that half a step takes away for each velocity by springs and axial force [1/s]
       real(wp) :: inverse(lanes, 4) = 0.0_wp, per_h(lanes) = 0.0_wp, g(lanes, 4) = 0.0_wp
-      !> Damping on the present lines (11, 12, 22), see `body_damping`; for RK4 see `decay_of`
+      !> Damping matrix C on the present lines (11, 12, 22); for RK4 M^-1 C (11, 12, 21, 22) [1/s]
       real(wp) :: c(lanes, 3) = 0.0_wp, d(lanes, 4) = 0.0_wp
       !> Inverse of the mass in slip and rotation; moment of the axial force per rotation
       real(wp) :: inv_mass(lanes) = 0.0_wp, inv_coupling(lanes) = 0.0_wp, inv_inertia(lanes) = 0.0_wp, &
@@ -88,12 +88,13 @@ module rbs_solve_ensemble_lane_arrays
    end type body_arrays
 
    abstract interface
-      !> A step of all lanes. Those that have a run and could not take it, or not wholly, are listed.
+      !> A step of all lanes. Lanes that have a run and could not take it, or not wholly, are listed.
       subroutine advance_interface(x, y, method, count, list)
          import :: lane_clock, body_arrays, lane_method, lanes
          type(lane_clock), intent(inout) :: x
          type(body_arrays), intent(inout) :: y
          type(lane_method), intent(in) :: method
+         !> How many lanes are listed, and which: the first `count` of the list
          integer, intent(out) :: count, list(lanes)
       end subroutine advance_interface
 
@@ -102,9 +103,10 @@ module rbs_solve_ensemble_lane_arrays
          import :: lane_clock, body_arrays, lanes, wp
          type(lane_clock), intent(inout) :: x
          type(body_arrays), intent(inout) :: y
-         !> All motions, see `lane_clock%at` [s, m/s2]
+         !> Points of all motions, one motion after the other, in which `lane_clock%at` is a place [s, m/s2]
          integer, intent(in) :: m
          real(wp), intent(in) :: time(m), acceleration(m)
+         !> How many lanes are listed, and which: the first `count` of the list
          integer, intent(out) :: count, list(lanes)
       end subroutine finish_interface
    end interface

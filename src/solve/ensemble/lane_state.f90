@@ -13,9 +13,11 @@ module rbs_solve_ensemble_lane_state
 
 contains
 
-   !> Works and lines of the springs.
+   !> Put works and lines of the two springs from the state of a run alone into its lane.
    subroutine springs_to_lane(y, l, state)
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(state_type), intent(in) :: state
       integer :: j
@@ -33,10 +35,13 @@ contains
       end associate
    end subroutine springs_to_lane
 
-   !> How the joints move, works, and the largest responses.
+   !> Put motion of the joints, works and the largest responses from the state of a run alone into its lane.
    subroutine motion_to_lane(x, y, l, state)
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(state_type), intent(in) :: state
 
@@ -51,10 +56,14 @@ contains
       call bounds_to_lane(y, l, state)
    end subroutine motion_to_lane
 
-   !> The same at the start of a step.
+   !> Give the state of a run alone what its lane has at the start of a step: time, motion of the joints,
+   !> works, the largest responses and the motion of the ground.
    subroutine motion_from_lane(x, y, l, state)
+      !> Clock and column of every lane
       type(lane_clock), intent(in) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(in) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(state_type), intent(inout) :: state
 
@@ -73,8 +82,10 @@ contains
       call ground_from_lane(x, l, state)
    end subroutine motion_from_lane
 
-   !> Of its motion a run alone has the present interval and the next.
+   !> Give the state of a run alone the present interval of the ground motion and the next; a step needs no
+   !> more of it.
    subroutine ground_from_lane(x, l, state)
+      !> Clock and column of every lane
       type(lane_clock), intent(in) :: x
       !> Number of the lane
       integer, intent(in) :: l
@@ -86,9 +97,11 @@ contains
       call state%loads%signal(horizontal)%replace(time, value)
    end subroutine ground_from_lane
 
-   !> Deformations between which no limit state is reached, and those at the last check.
+   !> Put the deformations between which no limit state is reached, and those at the last check, into a lane.
    subroutine bounds_to_lane(y, l, state)
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(state_type), intent(in) :: state
 
@@ -97,9 +110,12 @@ contains
       y%from(l, :) = state%monitor%q
    end subroutine bounds_to_lane
 
-   !> Velocities, accelerations and forces at the start of the next implicit step.
+   !> Put what the next implicit step starts with into a lane: velocities, accelerations and forces of the
+   !> body, and the largest forces so far.
    subroutine step_to_lane(y, l, stepper)
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(implicit_stepper), intent(in) :: stepper
 
@@ -109,8 +125,12 @@ contains
       y%largest(l, :) = stepper%step%largest(:2)
    end subroutine step_to_lane
 
+   !> Give the method what its next implicit step starts with, from a lane: velocities, accelerations and
+   !> forces of the body, and the largest forces so far.
    subroutine step_from_lane(y, l, stepper)
+      !> Motion and springs of every lane
       type(body_arrays), intent(in) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(implicit_stepper), intent(inout) :: stepper
 

@@ -21,7 +21,9 @@ contains
 
    !> Put masses, lengths and axial force of a column into a lane.
    subroutine body_to_lane(x, l, state)
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Number of the lane
       integer, intent(in) :: l
       type(state_type), intent(in) :: state
       type(rk4_body) :: body
@@ -42,6 +44,7 @@ contains
    !> Take over the parameters of the method, which are the same in all lanes.
    pure subroutine method_to_body(method, body)
       type(lane_method), intent(in) :: method
+      !> The record of a step, which all lanes share
       type(one_body_step), intent(inout) :: body
 
       body%alpha_m = method%alpha_m
@@ -51,11 +54,15 @@ contains
       body%wanted = method%wanted
    end subroutine method_to_body
 
-   !> Take over the column of a lane and its step.
+   !> Copy the column of a lane and its step into the record that all lanes share.
    pure subroutine lane_to_body(x, l, damping, body)
+      !> Clock and column of every lane
       type(lane_clock), intent(in) :: x
+      !> Number of the lane
       integer, intent(in) :: l
+      !> Damping of the column, if it has any
       type(body_damping), intent(in) :: damping
+      !> The record of a step, which all lanes share
       type(one_body_step), intent(inout) :: body
 
       body%h = x%h(l)
@@ -66,20 +73,29 @@ contains
       body%upper = x%upper(l)
       body%pdelta_moment = x%pdelta_moment(l)
       if (x%damped) body%damping = damping
+      ! The tangent in the record is that of another lane.
       body%fits = .false.
    end subroutine lane_to_body
 
-   !> The step of RK4 has ended, and only the springs have still to follow.
+   !> RK4 has moved the column to the end of the step: move the springs there, along as many lines as they
+   !> pass, and put them into the lane.
    subroutine follow_springs(x, y, l, damping, line, springs)
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane
       integer, intent(in) :: l
+      !> Damping of the column, if it has any
       type(body_damping), intent(in) :: damping
+      !> Present lines of the springs of this lane, slip and rotation
       type(segment), intent(inout) :: line(2)
+      !> Springs of the run alone, whose rules and memories these lines come from
       type(spring_array), intent(inout) :: springs
       type(body_spring) :: spring
       integer :: i, events
 
+      ! Slip and rotation
       do i = 1, 2
          spring%line = line(i)
          spring%lower = y%lower(l, i)
@@ -100,15 +116,24 @@ contains
       call fit_resistance(x, y, l, damping)
    end subroutine follow_springs
 
-   !> Follow the trial of an implicit step along the lines of the springs.
+   !> Complete an implicit step whose trial, on the lines of its start, takes springs beyond the ends of these
+   !> lines: find its end along the lines that follow, and put it into the lane.
    subroutine follow_trial(x, y, l, damping, body, line, springs, taken)
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane
       integer, intent(in) :: l
+      !> Damping of the column, if it has any
       type(body_damping), intent(in) :: damping
+      !> The record of a step, which all lanes share
       type(one_body_step), intent(inout) :: body
+      !> Present lines of the springs of this lane, slip and rotation
       type(segment), intent(inout) :: line(2)
+      !> Springs of the run alone, whose rules and memories these lines come from
       type(spring_array), intent(inout) :: springs
+      !> Whether the end was found; else the lane is as before
       logical, intent(out) :: taken
       integer :: i
 
@@ -137,6 +162,7 @@ contains
          x%c(l, :) = body%c
       end if
       x%ground(l) = body%ground
+      ! The velocity of the slip is that of the bottom of the body.
       y%v(l, 1) = body%v1(1) - body%lower*body%v1(2)
       y%v(l, 2) = body%v1(2)
       do i = 1, 2
@@ -153,9 +179,11 @@ contains
       end do
    end subroutine follow_trial
 
-   !> Take a spring from its lane, as it is at the start of a step.
+   !> Take spring i (1: slip, 2: rotation) from lane l, as it is at the start of a step.
    pure subroutine spring_from_lane(y, l, i, line, spring)
+      !> Motion and springs of every lane
       type(body_arrays), intent(in) :: y
+      !> Number of the lane; 1: slip, 2: rotation
       integer, intent(in) :: l, i
       type(segment), intent(in) :: line
       type(body_spring), intent(inout) :: spring
@@ -165,12 +193,15 @@ contains
       spring%upper = y%upper(l, i)
       spring%d = y%q(l, i)
       spring%work = y%work(l, i)
+      ! It has not come to its line in this step.
       spring%direction = 0
    end subroutine spring_from_lane
 
-   !> Put spring i into lane l.
+   !> Put work and line of spring i (1: slip, 2: rotation) into lane l.
    pure subroutine spring_to_lane(y, l, i, spring)
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
+      !> Number of the lane; 1: slip, 2: rotation
       integer, intent(in) :: l, i
       type(body_spring), intent(in) :: spring
 
@@ -183,22 +214,28 @@ contains
       y%direction(l, i) = real(spring%line%unload_on_reversal, wp)
    end subroutine spring_to_lane
 
-   !> Take from the state of a run alone the lines on which the next steps start; put the constants of these
-   !> steps into the lane.
+   !> Take from the state of a run alone the lines on which the next steps start, and put what these steps
+   !> need of them into the lane: the inverse of the tangent, or what RK4 multiplies velocities by.
    subroutine lines_to_lane(x, y, l, state, body, implicit, line)
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(in) :: y
+      !> Number of the lane
       integer, intent(in) :: l
       type(state_type), intent(in) :: state
+      !> The record of a step, which all lanes share
       type(one_body_step), intent(inout) :: body
       !> Whether the method is implicit
       logical, intent(in) :: implicit
+      !> Present lines of the springs of this lane, slip and rotation
       type(segment), intent(out) :: line(2)
       integer :: i
 
       do i = 1, 2
          line(i) = state%springs%line_of(i)
       end do
+      ! The record is shared: step and column of this lane come first, then the tangent.
       if (implicit) then
          call body%set_step(x%h(l))
          x%per_h(l) = body%per_h
@@ -211,11 +248,15 @@ contains
       end if
    end subroutine lines_to_lane
 
-   !> Hand the lines that the springs have reached here back to the state of a run alone.
+   !> Give the springs of a run alone the lines, deformations and works that they have in the lane.
    subroutine lines_from_lane(y, l, line, springs)
+      !> Motion and springs of every lane
       type(body_arrays), intent(in) :: y
+      !> Number of the lane
       integer, intent(in) :: l
+      !> Present lines of the springs of this lane, slip and rotation
       type(segment), intent(in) :: line(2)
+      !> Springs of the run alone, whose rules and memories these lines come from
       type(spring_array), intent(inout) :: springs
       integer :: i
 
@@ -227,9 +268,13 @@ contains
    !> Renew what a step of RK4 multiplies velocities by, resistance and damping, after a spring has changed
    !> its line.
    pure subroutine fit_resistance(x, y, l, damping)
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(in) :: y
+      !> Number of the lane
       integer, intent(in) :: l
+      !> Damping of the column, if it has any
       type(body_damping), intent(in) :: damping
       real(wp) :: g(4)
       integer :: i

@@ -8,6 +8,7 @@ module rbs_solve_ensemble_processor_unknown
 
 contains
 
+   !> Level 1: the instructions that all processors of the family have.
    integer(c_int) function processor_level() bind(c, name='rbs_processor_level')
       processor_level = 1_c_int
    end function processor_level

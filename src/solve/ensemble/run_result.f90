@@ -40,7 +40,9 @@ contains
               'residual_storey_drift'
    end function measure_names
 
-   !> Fate and measures of a run that has ended.
+   !> Put fate and measures of a run that has ended into its result: failed with its message where there is an
+   !> error, else lost its axial load, collapsed or completed. Measures that a run does not have are not a
+   !> number.
    subroutine collect(reached, summary, error, result)
       !> When each limit state was reached, `huge` if it was not (states) [s]
       real(wp), intent(in) :: reached(:)
@@ -61,6 +63,8 @@ contains
       if (summary%collapsed) result%fate = fate_collapsed
       if (summary%lost_joint > 0) result%fate = fate_axial
       result%reached = merge(reached, nothing, reached < huge(1.0_wp))
+      ! In the order of `measure_names`. Limit state 1 is the first yield; the last two are drifts of storeys,
+      ! which only frames have.
       result%value = [summary%peak_displacement, summary%last_displacement, summary%peak_base_shear, &
                       summary%peak_rotation, summary%energy%input, summary%energy%spring, &
                       summary%energy%damping, summary%residual, &

@@ -66,13 +66,17 @@ contains
       type(ensemble_column), intent(in), target :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
+      !> The runs to be taken, by their places in `run` and `result`
       type(lane_task), intent(in) :: task(:)
-      !> Of the kernel, see `chosen_kernel`
+      !> Kernel: 0: the fastest that the processor has; 1, 2 or 3: at the most that of the baseline, of AVX2,
+      !> of AVX-512
       integer, intent(in) :: level
       type(run_result), intent(inout) :: result(:)
-      !> See `run_block`
+      !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done,
+      !> which each run here adds to
       integer, intent(inout), volatile :: control(2)
       type(batch_type), target :: batch
+      !> Task begun last, number of lanes with a run, and a lane
       integer :: next, busy, l
 
       if (size(task) == 0) return
@@ -88,11 +92,12 @@ contains
 
    contains
 
-      !> One step of all lanes.
+      !> One step of all lanes; lanes whose runs have ended get the next ones.
       subroutine advance_all()
          integer :: count, list(lanes), failed, fails(lanes), j
          type(error_type), allocatable :: error
 
+         ! The kernel lists the lanes on whose steps springs leave their lines.
          call batch%kernel%advance(batch%x, batch%y, batch%method, count, list)
          failed = 0
          do j = 1, count
@@ -100,6 +105,7 @@ contains
             if (.not. allocated(error)) cycle
             failed = failed + 1
             fails(failed) = list(j)
+            ! A lane whose run has failed is empty for `finish`, and is filled again after it.
             call unload(batch, list(j), task, result, error)
          end do
          call batch%kernel%finish(batch%x, batch%y, size(batch%time), batch%time, batch%acceleration, count, &
@@ -114,8 +120,9 @@ contains
          end do
       end subroutine advance_all
 
-      !> A run is done.
+      !> The run of a lane is done: count it, and fill the lane with the next.
       subroutine free(l)
+         !> Number of the lane
          integer, intent(in) :: l
 
          control(2) = control(2) + 1
@@ -123,11 +130,14 @@ contains
          call refill(l)
       end subroutine free
 
-      !> Put the next run into a lane, if there is one.
+      !> Put the next run into a lane, if there is one. A run that cannot begin has failed, and the one after
+      !> it is tried.
       subroutine refill(l)
+         !> Number of the lane
          integer, intent(in) :: l
          type(error_type), allocatable :: error
 
+         ! `next` is the task begun last. None begins after another thread has asked to stop.
          do while (next < size(task) .and. control(1) == 0)
             next = next + 1
             batch%lane(l)%task = next
@@ -146,12 +156,13 @@ contains
 
    end subroutine run_in_lanes
 
-   !> Lanes without runs, and the motions.
+   !> Make lanes without runs, and the table of all motions.
    subroutine create_batch(batch, damped, motion, level)
       type(batch_type), intent(inout), target :: batch
       !> Whether the columns have damping
       logical, intent(in) :: damped
       type(ensemble_motion), intent(in) :: motion(:)
+      !> Kernel: 0: the fastest; else the highest level that may be taken
       integer, intent(in) :: level
       !> Numbers in a line of the cache
       integer, parameter :: line = 8
@@ -163,6 +174,7 @@ contains
       clock = line*ceiling(storage_size(batch%x)/real(line*storage_size(1.0_wp), wp))
       bodies = storage_size(batch%y)/storage_size(1.0_wp)
       allocate (batch%storage(line + clock + bodies), batch%lane(lanes))
+      ! Address in numbers of 8 bytes; the first place is at a border between lines of the cache.
       address = transfer(c_loc(batch%storage), address)/(storage_size(1.0_wp)/8)
       first = int(modulo(-address, int(line, c_intptr_t))) + 1
       call c_f_pointer(c_loc(batch%storage(first)), batch%x)
@@ -181,16 +193,19 @@ contains
          batch%first(j) = at + 1
          batch%time(at + 1:at + m + 2) = [motion(j)%time, motion(j)%time(m) + 1.0_wp, &
                                           motion(j)%time(m) + 2.0_wp]
-         ! After its end a motion stays at its last value.
+         ! After its end a motion stays at its last value, for two more intervals that the kernel looks ahead
+         ! into.
          batch%acceleration(at + 1:at + m) = motion(j)%acceleration
          batch%acceleration(at + m + 1:at + m + 2) = motion(j)%acceleration(m)
          at = at + m + 2
       end do
    end subroutine create_batch
 
-   !> A run begins in a lane. Its first step is taken alone, since the method finds its starting values there.
+   !> A run begins in a lane. The lane is not yet ready for the kernel: its first step is taken by the state
+   !> and the method of the lane alone, which find their starting values there.
    subroutine load_run(batch, l, column, column_number, motion, first, task, error)
       type(batch_type), intent(inout) :: batch
+      !> Number of the lane
       integer, intent(in) :: l
       !> The column, and its number
       type(ensemble_column), intent(in), target :: column
@@ -203,6 +218,7 @@ contains
 
       call load_motion(motion, first, task, batch%x, l)
       associate (x => batch%x, y => batch%y, lane => batch%lane(l))
+         ! State and method serve on where the column and the step are those of the last run of the lane.
          if (lane%column == column_number .and. .not. abs(lane%dt - x%h(l)) > 0.0_wp) then
             call ground_from_lane(x, l, lane%state)
             call restart_state(lane%state)
@@ -223,6 +239,7 @@ contains
          x%t(l) = 0.0_wp
          x%steps(l) = 0.0_wp
          x%displacement(l) = 0.0_wp
+         ! Residual of energy, and the largest energy
          x%residual(l) = 0.0_wp
          x%most(l) = 0.0_wp
          x%ended(l) = 0.0_wp
@@ -232,9 +249,10 @@ contains
       end associate
    end subroutine load_run
 
-   !> State and method of a run, and the constants of its column.
+   !> Make state and method of a run, and put the constants of its column into the lane.
    subroutine create_run(batch, l, column, task, error)
       type(batch_type), intent(inout) :: batch
+      !> Number of the lane
       integer, intent(in) :: l
       type(ensemble_column), intent(in), target :: column
       type(lane_task), intent(in) :: task
@@ -243,6 +261,7 @@ contains
       type(initial_state) :: at_rest
 
       associate (x => batch%x, y => batch%y, lane => batch%lane(l))
+         ! Until it is made the lane has no column.
          lane%column = 0
          loads%signal(horizontal)%time = [x%begin(l), x%finish(l), x%next_finish(l)]
          loads%signal(horizontal)%value = [x%value(l), x%next_value(l), x%after_value(l)]
@@ -260,12 +279,16 @@ contains
       end associate
    end subroutine create_run
 
-   !> The first two intervals of the motion.
+   !> Put the first two intervals of the motion, times its factor, into a lane, and its counts of steps and
+   !> intervals.
    pure subroutine load_motion(motion, first, task, x, l)
       type(ensemble_motion), intent(in) :: motion
+      !> Number of the first point of the motion in the table
       integer, intent(in) :: first
       type(lane_task), intent(in) :: task
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Number of the lane
       integer, intent(in) :: l
       integer :: m
 
@@ -281,6 +304,7 @@ contains
          x%value(l) = scale*value(1)
          x%next_value(l) = scale*value(2)
          x%slope(l) = (x%next_value(l) - x%value(l))/(time(2) - time(1))
+         ! A motion of two points stays at its last value.
          x%next_finish(l) = time(m) + 1.0_wp
          x%after_value(l) = x%next_value(l)
          x%next_slope(l) = 0.0_wp
@@ -289,13 +313,16 @@ contains
             x%after_value(l) = scale*value(3)
             x%next_slope(l) = (x%after_value(l) - x%next_value(l))/(time(3) - time(2))
          end if
+         ! The place of the third point in the table, behind which the kernel reads on
          x%at(l) = int(first + 2, int32)
       end associate
    end subroutine load_motion
 
-   !> Complete in scalar code the step that the other lanes have taken.
+   !> Complete, for one lane, the step that the other lanes have taken: from the trial of the kernel if there
+   !> is one, else as a whole by the method of the run alone. An error says why the run has failed.
    subroutine finish_step_scalar(batch, l, error)
       type(batch_type), intent(inout) :: batch
+      !> Number of the lane
       integer, intent(in) :: l
       type(error_type), allocatable, intent(out) :: error
       logical :: taken
@@ -304,7 +331,8 @@ contains
                  state => batch%lane(l)%state)
          taken = .false.
          if (x%tried(l) > 0.5_wp) then
-            ! Of RK4 the step has ended, and only the springs have still to follow.
+            ! An implicit step has left a trial. RK4 has ended the step, and only its springs have still to
+            ! follow.
             if (batch%method%implicit) then
                call follow_trial(x, y, l, state%motion%damping, batch%body, lane%line, state%springs, taken)
             else
@@ -319,12 +347,16 @@ contains
       end associate
    end subroutine finish_step_scalar
 
-   !> A whole step by the method of the run itself.
+   !> Take a whole step of a lane by the state and the method of the run alone, and put the result into the
+   !> lane.
    subroutine step_alone(batch, x, y, lane, l, error)
       type(batch_type), intent(inout) :: batch
+      !> Clock and column of every lane
       type(lane_clock), intent(inout) :: x
+      !> Motion and springs of every lane
       type(body_arrays), intent(inout) :: y
       type(lane_type), intent(inout) :: lane
+      !> Number of the lane
       integer, intent(in) :: l
       type(error_type), allocatable, intent(out) :: error
 
@@ -332,7 +364,7 @@ contains
       call motion_from_lane(x, y, l, lane%state)
       select type (stepper => lane%stepper)
       type is (implicit_stepper)
-         ! Before its first step the method has nothing to start from.
+         ! Before the first step, by the kernel or alone, the method has nothing to start from.
          if (x%steps(l) + stepper%steps > 0.5_wp) call step_from_lane(y, l, stepper)
       end select
       call lane%stepper%advance(lane%state, x%h(l), error)
@@ -347,7 +379,8 @@ contains
       call lines_to_lane(x, y, l, lane%state, batch%body, batch%method%implicit, lane%line)
    end subroutine step_alone
 
-   !> Lanes in which a limit state may have been reached.
+   !> Check the limit states of lanes whose deformations are where one may have been reached (flag `beyond`, 1
+   !> or 0).
    subroutine check_limit_states(batch)
       type(batch_type), intent(inout) :: batch
       integer :: l
@@ -355,8 +388,9 @@ contains
       do l = 1, lanes
          if (batch%x%beyond(l) < 0.5_wp) cycle
          associate (x => batch%x, y => batch%y, state => batch%lane(l)%state)
+            ! The state before the step, from which the monitor interpolates; a step that was cut has been
+            ! seen within.
             state%monitor%q(:) = y%from(l, :)
-            ! A step that was cut has been seen within.
             state%monitor%clock = max(state%monitor%clock, x%seen(l))
             state%q(:) = y%q(l, :)
             call state%monitor%check_limits(state%springs, state%q, x%displacement(l), x%t(l))
@@ -365,12 +399,14 @@ contains
       end do
    end subroutine check_limit_states
 
-   !> Fate and measures of a run that has ended; its lane is empty.
+   !> Store fate and measures of the run of a lane, which has ended, and leave the lane empty.
    subroutine unload(batch, l, task, result, error)
       type(batch_type), intent(inout) :: batch
+      !> Number of the lane
       integer, intent(in) :: l
       type(lane_task), intent(in) :: task(:)
       type(run_result), intent(inout) :: result(:)
+      !> Why the run has failed; not allocated: it has not
       type(error_type), allocatable, intent(in) :: error
       type(summary_type) :: summary
 
@@ -397,6 +433,7 @@ contains
          if (allocated(lane%state%monitor%reached)) then
             call collect(lane%state%monitor%reached, summary, error, result(this%run))
          else
+            ! A run that could not begin has no monitor.
             call collect([huge(1.0_wp)], summary, error, result(this%run))
          end if
          x%active(l) = 0.0_wp

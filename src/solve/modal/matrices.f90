@@ -55,7 +55,7 @@ contains
 
    contains
 
-      !> From the bands that the solvers take.
+      !> Assemble them from the bands that the solvers use.
       subroutine assemble_bands()
          real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
          real(wp) :: at_rest(signals)
@@ -65,6 +65,7 @@ contains
          allocate (matrices%mass(m, m), matrices%stiffness(m, m), matrices%geometric(m, m), &
                    matrices%damping(m, m), source=0.0_wp)
          matrices%unknown = structure%unknown_name
+         ! The mass of nodes is diagonal.
          do i = 1, m
             matrices%mass(i, i) = structure%inertias(i)
          end do
@@ -116,6 +117,7 @@ contains
          matrices%damping = matrices%damping + column%mass_damping*matrices%mass &
                             + column%stiffness_damping*matrices%stiffness
          allocate (matrices%unknown(m))
+         ! In the order of the kinds of springs: shear, flexure, axial
          names = [character(len=9) :: 'slip_', merge('theta_   ', 'rotation_', paper), 'opening_']
          do i = 1, m
             matrices%unknown(i) = trim(names(column%location(i)%kind))//to_text(column%location(i)%joint)
@@ -125,13 +127,15 @@ contains
          call transform(column, matrices%geometric)
          call transform(column, matrices%damping)
          if (column%held) matrices%unknown = pack(matrices%unknown, [(i /= column%at(flexure, n), i=1, m)])
+         ! Its rows are eqs 1 and 2 as they stand, not combined to a symmetric matrix.
          if (paper .and. .not. column%held) call paper_mass(column, matrices%mass(:2*n, :2*n))
       end subroutine assemble_column
 
-      !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute
-      !> rotations: a relative one is the difference of two.
+      !> Take the rotation of a held top out of a matrix, as it is minus the sum of those below; and in the
+      !> paper's form pass from relative rotations, each the difference of two, to absolute ones.
       subroutine transform(column, a)
          class(column_type), intent(in) :: column
+         !> Matrix in slips, relative rotations and openings, in this order
          real(wp), allocatable, intent(inout) :: a(:, :)
          integer :: i, last, n
          integer, allocatable :: kept(:)
@@ -157,9 +161,11 @@ contains
 
    end subroutine assemble_matrices
 
-   !> A symmetric matrix in full from its lower band.
+   !> A symmetric matrix in full from its lower band, whose row 1 is the diagonal.
    pure subroutine fill(band, a)
+      !> (half width + 1, m)
       real(wp), intent(in) :: band(:, :)
+      !> (m, m), whose elements outside the band stay as they are
       real(wp), intent(inout) :: a(:, :)
       integer :: i, j
 
@@ -171,8 +177,8 @@ contains
       end do
    end subroutine fill
 
-   !> The accelerations that forces give to the column at rest: eqs 1 and 2 of the paper, M q'' = p, solved as
-   !> they stand.
+   !> The accelerations that forces give to a structure at rest: M q'' = p, eqs 1 and 2 of the paper for a
+   !> column in its form, solved as they stand.
    subroutine accelerations(self, force, acceleration, error)
       class(matrices_type), intent(in) :: self
       !> Forces on the unknowns (unknowns) [N, N m]
@@ -204,8 +210,9 @@ contains
       if (.not. allocated(error)) damping = matmul(momenta, transpose(momenta))
    end subroutine modal_damping
 
-   !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked structure under its constant
-   !> load: momenta M s_j times sqrt(2 zeta_j omega_j).
+   !> Modal damping is C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', with the modes s_j of the uncracked
+   !> structure under its constant load: find the momenta M s_j times sqrt(2 zeta_j omega_j), whose products
+   !> add up to C.
    subroutine find_modal_momenta(structure, momenta, error)
       class(structure_type), intent(in) :: structure
       !> (unknowns, modes)
@@ -214,6 +221,7 @@ contains
       type(modes_type) :: modes
       integer :: given, j
 
+      ! One damping ratio is for all modes; several are for the first modes.
       given = size(structure%modal_damping)
       if (given == 1) then
          call find_modes(structure, modes, error)

@@ -93,6 +93,7 @@ contains
       type(mode_search), allocatable :: search(:)
       real(wp), allocatable :: squares(:, :), shapes(:, :, :)
       integer :: b, i, wanted
+      !> Of each part: the mode that comes next, and whether there is one
       integer, allocatable :: next(:)
       logical, allocatable :: left(:)
 
@@ -149,9 +150,10 @@ contains
       end do
    end subroutine find_modes
 
-   !> Condition of the modes under axial load.
+   !> Condition of the modes under axial load, with a warning where it is bad.
    subroutine set_condition(structure, dynamic, modes)
       class(structure_type), intent(in) :: structure
+      !> The first part of the structure, on which the axial forces act
       class(dynamic_stiffness), intent(inout) :: dynamic
       type(modes_type), intent(inout) :: modes
       !> Digits of the critical load that the condition needs
@@ -159,6 +161,7 @@ contains
       real(wp) :: share
 
       if (.not. structure%axially_loaded) return
+      ! The axial load as a share of the critical one, 1/f; the condition is (f + 1)/(f - 1).
       share = 1.0_wp/dynamic%critical_multiple(digits_needed)
       modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
       if (modes%condition < worst_condition) return
@@ -167,7 +170,7 @@ contains
                       ' in the square of the lowest frequency'
    end subroutine set_condition
 
-   !> Dynamic stiffness of the structure, in parts that nothing couples.
+   !> Begin the search of the modes in each part of a structure; nothing couples the parts.
    subroutine new_searches(structure, axial, search)
       class(structure_type), intent(in) :: structure
       !> Whether the axial forces count
@@ -184,7 +187,8 @@ contains
       call search%start()
    end subroutine new_searches
 
-   !> Refuse a structure that has no modes: without inertia, or buckled by its constant axial forces alone.
+   !> Refuse a structure that has no modes: it has no inertia, or is buckled by its constant axial forces
+   !> alone.
    subroutine check_at_rest(structure, error)
       class(structure_type), intent(in) :: structure
       type(error_type), allocatable, intent(out) :: error
@@ -194,6 +198,7 @@ contains
       call structure%check_inertia(error)
       if (allocated(error) .or. .not. structure%axially_loaded) return
       call new_searches(structure, .true., search)
+      ! No square of a frequency is below zero: it is stable.
       if (search(1)%dynamic%factor(0.0_wp) == 0) return
       factor = search(1)%dynamic%critical_multiple()
       force = structure%constant_axial(maxloc(abs(structure%constant_axial), dim=1))
@@ -206,8 +211,10 @@ contains
    !> forces count where the kinematics let them.
    subroutine frequency_bounds(structure, lowest, error, highest)
       class(structure_type), intent(in) :: structure
+      !> 0 with an error
       real(wp), intent(out) :: lowest
       type(error_type), allocatable, intent(out) :: error
+      !> `huge` with an error
       real(wp), intent(out), optional :: highest
 
       lowest = 0.0_wp
@@ -216,7 +223,7 @@ contains
       if (.not. allocated(error)) call frequency_range(structure, structure%axially_loaded, lowest, highest)
    end subroutine frequency_bounds
 
-   !> The lowest and the highest frequency of a structure.
+   !> The lowest and the highest circular frequency of a structure [rad/s].
    subroutine frequency_range(structure, axial, lowest, highest)
       class(structure_type), intent(in) :: structure
       !> Whether the axial forces count
@@ -241,6 +248,7 @@ contains
       class(structure_type), intent(in) :: structure
       real(wp), intent(out) :: limit
       type(error_type), allocatable, intent(out) :: error
+      !> Lowest and highest frequency without and with axial forces [rad/s]
       real(wp) :: plain(2), loaded(2)
 
       limit = 0.0_wp
@@ -259,9 +267,10 @@ contains
    !> stiffness in the shape, the scalar equations themselves give the longest one.
    pure real(wp) function step_of_mode(structure, plain, loaded) result(h)
       class(structure_type), intent(in) :: structure
-      !> Circular frequency without and with axial forces [rad/s]
+      !> Circular frequency of the mode without and with axial forces [rad/s]
       real(wp), intent(in) :: plain, loaded
       real(wp) :: omega, c, remaining
+      !> Whether all springs stay on their first lines; whether the scalar equation of the mode holds
       logical :: elastic, apart
 
       elastic = all(structure%rules%name == 'elastic')
@@ -289,6 +298,7 @@ contains
    !> Longest stable step of RK4 for x'' + c x' + omega^2 x = 0: the largest h with |R(lambda h)| <= 1
    !> for both eigenvalues, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24. Without damping 2 sqrt(2)/omega.
    pure real(wp) function stable_step(omega, c) result(h)
+      !> Circular frequency [rad/s], and damping over mass [1/s]
       real(wp), intent(in) :: omega, c
       complex(wp) :: root, lambda(2)
       real(wp) :: below, above
@@ -319,6 +329,8 @@ contains
       h = below
    end function stable_step
 
+   !> Begin a search: every squared frequency is between zero and their sum. The lower bounds are raised from
+   !> zero: s is lowered by powers of two until no squared frequency is below it.
    impure elemental subroutine start(self)
       class(mode_search), intent(inout) :: self
       real(wp) :: s
@@ -339,9 +351,10 @@ contains
       end do
    end subroutine start
 
-   !> Number of squared frequencies below s, which bounds them all.
+   !> Number of squared frequencies below s, by which the bounds of all of them are narrowed.
    integer function count_below(self, s) result(below)
       type(mode_search), intent(inout) :: self
+      !> Square of a circular frequency [rad2/s2]
       real(wp), intent(in) :: s
       integer :: i
 
@@ -361,6 +374,7 @@ contains
    !> Circular frequency of mode j [rad/s].
    real(wp) function frequency(self, j) result(omega)
       class(mode_search), intent(inout) :: self
+      !> 1: the lowest
       integer, intent(in) :: j
       real(wp) :: square(1), shape(size(self%x), 1)
 
@@ -368,16 +382,21 @@ contains
       omega = sqrt(square(1))
    end function frequency
 
-   !> Mode j.
+   !> Find mode j (1: the lowest): by bisection until no other square is between its bounds, then by Rayleigh
+   !> quotient iteration. A quotient that leaves the bounds has gone astray, and bisection goes on.
    subroutine find(self, j, column, squares, shapes)
       class(mode_search), intent(inout) :: self
       integer, intent(in) :: j
       !> Its column in the arrays, after the modes below it
       integer, intent(in) :: column
-      !> Squares of the frequencies, and shapes of unit modal mass (unknowns, as many)
+      !> Squares of the frequencies [rad2/s2], and shapes of unit modal mass (unknowns, as many): the modes
+      !> below are used, and mode j is put into `column`
       real(wp), intent(inout), contiguous :: squares(:), shapes(:, :)
+      !> Change of the Rayleigh quotient in this step and in the last; the quotient; square of a frequency for
+      !> which the matrix is factored
       real(wp) :: change, last_change, rho, shift
       integer :: below, step
+      !> Whether the iteration leads to another mode; whether there is a number between the bounds
       logical :: astray, more
 
       astray = .false.
@@ -419,8 +438,8 @@ contains
 
    contains
 
-      !> Inverse iteration, and the Rayleigh quotient. Motions are scaled by powers of two, so that the units
-      !> change no digit.
+      !> Inverse iteration, and the Rayleigh quotient. The shape is kept free of close modes that were found
+      !> before. Motions are scaled by powers of two, so that the units change no digit.
       subroutine iterate()
          real(wp) :: share
          integer :: i

@@ -36,12 +36,14 @@ contains
    !> The damping of a column of one body.
    pure type(body_damping) function damping_of_body(column, joint_damping, modal) result(damping)
       type(column_type), intent(in) :: column
-      !> In proportion to the initial stiffness of the springs (2); of the modes (2, 2)
+      !> Damping of the springs by their initial stiffness (2) [N s/m, N m s]; matrix of the modal damping
+      !> (2, 2), not allocated: none
       real(wp), intent(in) :: joint_damping(:)
       real(wp), intent(in), allocatable :: modal(:, :)
 
       damping%acts = column%damped
       if (.not. damping%acts) return
+      ! Mass damping resists the velocity of the centroid, which slip and rotation share.
       associate (m => column%mass_damping*column%mass(1), lower => column%lower(1))
          damping%constant = [m, m*lower, m*lower**2 + column%mass_damping*column%inertia(1)]
       end associate
@@ -53,10 +55,11 @@ contains
       if (allocated(modal)) damping%constant = damping%constant + [modal(1, 1), modal(1, 2), modal(2, 2)]
    end function damping_of_body
 
-   !> C on the present lines (11, 12, 22).
+   !> C on the present lines (11, 12, 22): its constant part, and that in proportion to the stiffness of the
+   !> lines; springs that soften damp nothing.
    pure function on_lines(self, k_1, k_2) result(c)
       class(body_damping), intent(in) :: self
-      !> Slopes of the lines
+      !> Slopes of the lines of slip [N/m] and rotation [N m]
       real(wp), intent(in) :: k_1, k_2
       real(wp) :: c(3)
 
@@ -65,9 +68,10 @@ contains
       c(3) = self%constant(3) + self%of_lines*max(k_2, 0.0_wp)
    end function on_lines
 
-   !> Accelerations that it takes away for each velocity, M^-1 C (11, 12, 21, 22) [1/s].
+   !> Deceleration by the damping for each velocity, M^-1 C (11, 12, 21, 22) [1/s].
    pure function decay_of(inv_mass, inv_coupling, inv_inertia, c) result(d)
-      !> Inverse of the mass in slip and rotation, see `rk4_body`; C
+      !> Inverse of the mass matrix in slip and rotation (11, 12, 22) [1/kg, 1/(kg m), 1/(kg m2)]; C (11, 12,
+      !> 22)
       real(wp), intent(in) :: inv_mass, inv_coupling, inv_inertia, c(3)
       real(wp) :: d(4)
 

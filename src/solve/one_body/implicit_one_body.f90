@@ -80,9 +80,11 @@ module rbs_solve_one_body_implicit_one_body
 
 contains
 
-   !> Another length of the step.
+   !> Set another length of the step; the inverse of the tangent, which is for the length before, is to be
+   !> found anew.
    pure subroutine set_step(self, h)
       class(one_body_step), intent(inout) :: self
+      !> Step [s]
       real(wp), intent(in) :: h
 
       self%h = h
@@ -100,6 +102,7 @@ contains
       real(wp), intent(in) :: q(2), v0(2), a0(2), g0(2), largest(2)
       !> Lateral force [N] and acceleration of the ground [m/s2] at the end
       real(wp), intent(in) :: push, ground
+      !> Whether the end of the step was found
       logical, intent(out) :: taken
       real(wp) :: before_1, before_2, shear, moment, moved_1, moved_2, to_1, to_2
       real(wp) :: v1_1, v1_2, a1_1, a1_2, g1_1, g1_2, start_1, start_2, rest_1, rest_2, scale_1, scale_2
@@ -148,10 +151,12 @@ contains
       end if
    end subroutine take_step
 
-   !> Find the end of the step along the lines that follow, and put the springs there.
+   !> Find the end of the step from the trial that has left the lines, along the lines that follow, and put
+   !> the springs there; else the springs are as before.
    subroutine follow_lines(self, springs, taken)
       type(one_body_step), intent(inout) :: self
       type(spring_array), intent(inout) :: springs
+      !> Whether the end was found
       logical, intent(out) :: taken
       integer :: i
 
@@ -169,7 +174,8 @@ contains
       self%version = springs%version
    end subroutine follow_lines
 
-   !> Find the inverse of the tangent on the present lines, where that is not the one that is there.
+   !> Find the inverse of the tangent on the present lines, unless it is there already: springs have the same
+   !> version as long as none changes its line.
    pure subroutine fit_to(self, springs)
       class(one_body_step), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -181,12 +187,15 @@ contains
       self%version = springs%version
    end subroutine fit_to
 
-   !> Find the end of the step. If it is not found, the memories are as before.
+   !> Find the end of the step by Newton's method, from the trial `moved`, whose residual did `work` on it. If
+   !> it is not found, the memories are as before.
    subroutine solve(self, slot, taken)
       class(one_body_step), intent(inout) :: self
       !> Rules and memories of the springs
       type(spring_slot), intent(inout) :: slot(2)
+      !> Whether the end was found
       logical, intent(out) :: taken
+      !> Work of the residual on the last correction, at its end; out of bounds where there is none
       real(wp) :: slope
       integer :: trial, i
 
@@ -225,7 +234,8 @@ contains
       end do
    end subroutine solve
 
-   !> Find the inverse of the tangent on the present lines.
+   !> Find the inverse of the tangent of the step on the present lines, in displacement and rotation of the
+   !> body: mass, damping and stiffness as the parameters of the method weigh them.
    pure subroutine fit(self)
       type(one_body_step), intent(inout) :: self
       real(wp) :: of_mass, per_velocity, shear, both, slip, mixed, moment, share
@@ -281,12 +291,12 @@ contains
       end do
    end subroutine cut_correction
 
-   !> Trial at a displacement of the body: the springs move along their lines. Residual
-   !> of the balance, and its work on the correction.
+   !> A trial at a displacement of the body: the springs move along their lines. It gives the residual of the
+   !> balance, and its work on the correction.
    subroutine check_end(self, slot, slope)
       type(one_body_step), intent(inout) :: self
       type(spring_slot), intent(inout) :: slot(2)
-      !> `huge`: out of bounds, or a rule cycles through lines
+      !> Work of the residual on the last correction; `huge`: out of bounds, or a rule cycles through lines
       real(wp), intent(out) :: slope
 
       slope = huge(1.0_wp)
@@ -294,6 +304,7 @@ contains
       self%q(2) = self%q0(2) + self%moved(2)
       if (.not. (abs(self%q(1)) < out_of_bounds .and. abs(self%q(2)) < out_of_bounds)) return
       if (.not. (is_on_line(self%spring(1), self%q(1)) .and. is_on_line(self%spring(2), self%q(2)))) then
+         ! Every trial starts from the start of the step.
          if (self%events > 0) call put_back(self, slot)
          call find_line(self, 1, slot)
          call find_line(self, 2, slot)
@@ -307,13 +318,14 @@ contains
    !> beyond that end.
    pure logical function is_on_line(spring, q)
       type(body_spring), intent(in) :: spring
+      !> Deformation that it moves to [m or rad]
       real(wp), intent(in) :: q
 
       is_on_line = side_of(spring, q) == 0 .and. spring%direction*(q - spring%d) >= 0.0_wp
    end function is_on_line
 
-   !> Put a spring, which is at the start of the step, on the line that it is on at the end. It stays where
-   !> that line begins.
+   !> Put spring i (1: slip, 2: rotation), which is at the start of the step, on the line that it is on at the
+   !> end. Its deformation stays where that line begins.
    subroutine find_line(self, i, slot)
       type(one_body_step), intent(inout) :: self
       integer, intent(in) :: i
@@ -324,6 +336,7 @@ contains
          do lines = 1, most_changes
             direction = side_of(spring, self%q(i))
             if (direction == 0) return
+            ! The rule is about to change the memory for the first time in this step.
             if (spring%direction == 0) call save_memory(slot(i))
             spring%direction = direction
             call change_line(spring, slot(i), direction, self%spring(2)%work)
@@ -344,13 +357,15 @@ contains
 
       self%events = 0
       do i = 1, 2
+         ! Still on the line of the start.
          if (self%spring(i)%direction == 0) cycle
          self%spring(i) = self%start(i)
          call return_memory(slot(i))
       end do
    end subroutine put_back
 
-   !> Residual of the balance for the present motion of the body.
+   !> Residual of the balance for the present motion of the body, and the forces that it is measured by: (1)
+   !> along the displacement of the body, (2) about its centroid.
    pure subroutine find_residual(self)
       type(one_body_step), intent(inout) :: self
       real(wp) :: shear, moment, inertia_1, inertia_2, v(2), c(3), damping(2)
@@ -367,6 +382,7 @@ contains
       self%g(2) = ((self%lower*shear + self%upper*self%push) - moment) + self%pdelta_moment*self%q(2)
       if (self%damping%acts) then
          v = self%v0 + (self%h*(1.0_wp - self%gamma))*self%a0 + (self%h*self%gamma)*self%a1
+         ! The velocity of the slip is that of the bottom of the body.
          v(1) = v(1) - self%lower*v(2)
          c = self%damping%on_lines(self%spring(1)%line%k, self%spring(2)%line%k)
          damping = [c(1)*v(1) + c(2)*v(2), c(2)*v(1) + c(3)*v(2)]
@@ -394,6 +410,7 @@ contains
    !> By which end of the line a deformation lies: +1, -1, or 0 if it lies on the line.
    pure integer function side_of(spring, d) result(side)
       type(body_spring), intent(in) :: spring
+      !> Deformation [m or rad]
       real(wp), intent(in) :: d
 
       side = 0
@@ -410,7 +427,7 @@ contains
       type(spring_slot), intent(inout) :: slot
       !> New deformation [m or rad]
       real(wp), intent(in) :: d
-      !> See `next_branch`
+      !> Work of the spring of rotation so far, with which a rule of the slip may decay [J]
       real(wp), intent(in) :: flexural_work
       !> Number of lines left; whether the rule cycles through lines without length
       integer, intent(out) :: events
@@ -450,11 +467,13 @@ contains
       type(spring_slot), intent(inout) :: slot
       !> +1: by the upper end, -1: by the lower end
       integer, intent(in) :: direction
+      !> Work of the spring of rotation so far, with which a rule of the slip may decay [J]
       real(wp), intent(in) :: flexural_work
 
       associate (line => spring%line)
          if (line%unload_on_reversal > 0) line%lo = spring%d
          if (line%unload_on_reversal < 0) line%hi = spring%d
+         ! Back on a one-way line the end is where the spring is.
          if (line%unload_on_reversal /= -direction) then
             call advance_on_branch(spring, merge(line%hi, line%lo, direction > 0))
          end if

@@ -17,8 +17,8 @@ module rbs_solve_one_body_rk4_one_body
       real(wp) :: inv_mass = 0.0_wp, inv_coupling = 0.0_wp, inv_inertia = 0.0_wp, pdelta_moment = 0.0_wp
       !> Distance of the centroid from the joint, length [m], and mass; accelerations by a lateral force
       real(wp), private :: lower = 0.0_wp, height = 0.0_wp, mass = 0.0_wp, push(2) = 0.0_wp
-      !> See `resistance_per_velocity`, `decay_of` and `body_damping`; the step and the lines that they belong
-      !> to
+      !> What velocities are multiplied by: results of `resistance_per_velocity` and of `decay_of`, and the
+      !> damping C (11, 12, 22); the step and the lines that they belong to
       real(wp), private :: g(4) = 0.0_wp, d(4) = 0.0_wp, c(3) = 0.0_wp, h = -1.0_wp
       integer, private :: version = -1
    contains
@@ -27,7 +27,7 @@ module rbs_solve_one_body_rk4_one_body
 
 contains
 
-   !> The column with one body.
+   !> Take the constants of a column with one body.
    subroutine create(self, column)
       class(rk4_body), intent(out) :: self
       type(column_type), intent(in) :: column
@@ -55,8 +55,9 @@ contains
       end if
    end function pdelta_moment_of
 
-   !> The step on the present lines of both springs, and the works of loads and damping in it [J]. Without
-   !> damping acceleration needs no velocity, so stages 1 and 2, and 3 and 4, do not wait for each other.
+   !> Move deformations and velocities over a step on the present lines of both springs, and find the works of
+   !> loads and damping in it [J]; the springs do not follow. Without damping acceleration needs no velocity,
+   !> so stages 1 and 2, and 3 and 4, do not wait for each other.
    subroutine take_step(self, springs, damping, h, load_force, load_ground, q, v, of_loads, of_damping)
       class(rk4_body), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -65,6 +66,7 @@ contains
       real(wp), intent(in) :: h, load_force(3), load_ground(3)
       !> Deformations and velocities
       real(wp), intent(inout) :: q(2), v(2)
+      !> Works in the step [J]
       real(wp), intent(out) :: of_loads, of_damping
       real(wp) :: half, sixth, q_1, q_2, v_1, v_2, shear, flexure, back_1, back_2, mid_1, mid_2, of_ground
       real(wp) :: along_1, along_2, along_3, about_1, about_2, about_3, of_force
@@ -118,7 +120,8 @@ contains
    !> force [1/s]: of the slip by slip and by rotation, of the rotation by slip and by rotation.
    pure function resistance_per_velocity(inv_mass, inv_coupling, inv_inertia, pdelta_moment, &
                                          k_1, k_2, half) result(g)
-      !> See `rk4_body`; slopes of the lines, half a step [s]
+      !> Inverse of the mass matrix in slip and rotation (11, 12, 22) [1/kg, 1/(kg m), 1/(kg m2)], moment of
+      !> the axial force per rotation [N m]; slopes of the lines [N/m, N m], half a step [s]
       real(wp), intent(in) :: inv_mass, inv_coupling, inv_inertia, pdelta_moment, k_1, k_2, half
       real(wp) :: g(4), shear, flexure
 

@@ -36,18 +36,22 @@ module rbs_solve_static_corner
 
 contains
 
-   !> Find the lines that lead on in a direction, and the rates on them.
+   !> Find the lines that lead on from a corner in a direction, and put the springs on them; the rates on the
+   !> lines, and the direction in which the path goes on, are those of the path. An error says why there are
+   !> none.
    !>
    !> The way on which no spring turns back is the one of greatest force rate. If there is none, springs
    !> without room are put on the next line, all at once as long as this leaves fewer and fewer without room
    !> (blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596). While the structure is stable there
    !> is no other way, and the first one first ends at it (Murty's least-index rule), whatever the order of
    !> springs. A structure that softens may have several ways: the fundamental one continues the rates before
-   !> the corner, see `follow_through`; where none is found, those go first that were changed least, so that
-   !> no number of a spring decides.
+   !> the corner, see `follow_through`; where none is found, springs that were changed least often are changed
+   !> first, so that no number of a spring decides.
    subroutine turn_corner(path, direction, target, error)
       class(static_path), intent(inout) :: path
+      !> +1 or -1: the driven quantity is to grow or to fall
       integer, intent(in) :: direction
+      !> Displacement [m] or force [N] that the path is on the way to, for messages
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       !> Springs blocked on their lines in their direction of motion, their number, and that with planes; how
@@ -59,6 +63,7 @@ contains
       changed = 0
       found = .false.
       is_singular = .false.
+      ! Rates are continued through a corner that springs have come to while the displacement is driven.
       through = .not. (path%by_force .or. path%springs%axial_load_varies)
       if (through) through = any(path%arrived /= 0)
       if (through) then
@@ -84,7 +89,8 @@ contains
 
    contains
 
-      !> Take the way through the corner; if it leads back, one forward if there is one.
+      !> Continue the rates through the corner. If this way leads back, a way forward goes before it, if there
+      !> is one.
       subroutine go_through()
          logical :: back
 
@@ -106,10 +112,12 @@ contains
          path%goes_back = back
       end subroutine go_through
 
-      !> Search a way forward.
+      !> Search a way forward: find rates, put springs that have no room for them on other lines, and repeat.
       subroutine search(effort)
-         !> `if_stable`, `by_blocks` or `to_the_end`
+         !> `if_stable`: only where all springs move on or the structure is stable; `by_blocks`: until blocks
+         !> of springs make no more progress; `to_the_end`: all tries
          integer, intent(in) :: effort
+         !> Least number of springs without room so far, and how often all may still be changed at once
          integer :: fewest, left, changes, i
 
          fewest = huge(1)
@@ -119,7 +127,8 @@ contains
             is_singular = .not. found
             if (.not. found) then
                if (effort < to_the_end) return
-               ! Some springs may unload, though there is no stiffness under the driven force: let them.
+               ! Of a column (no elements, no tangents): some springs may unload, though there is no stiffness
+               ! under the driven force: let them.
                if (path%by_force .and. size(path%structure%initial_tangent) == 0 .and. &
                    any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
                   do i = 1, path%moving
@@ -139,6 +148,7 @@ contains
                path%direction = direction
                return
             end if
+            ! A structure that is not known to be stable, and may soften, can have several ways on.
             if (effort == if_stable .and. changes == 1 .and. .not. path%is_stable) then
                if (path%structure%axially_loaded .or. any(path%springs%k(:path%moving) < 0.0_wp)) return
             end if
@@ -154,8 +164,9 @@ contains
          found = .false.
       end subroutine search
 
-      !> Springs that yield at once may leave a node free to turn, though one of them holds it: the one that
-      !> has come last and was changed least unloads. Those that should not are put back.
+      !> Springs that yield at once may leave a node free to turn, though one of them holds it: one unloads,
+      !> which has been changed least often here and, among equals, has come to an end. Those that
+      !> should not are put back later.
       subroutine let_one_unload()
          integer, allocatable :: turns(:)
          integer :: i
@@ -195,6 +206,7 @@ contains
       !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
       !> plane changes by that had no room on it.
       subroutine update_layer_branches(count)
+         !> Number without room, to which such joints are added
          integer, intent(inout) :: count
          real(wp) :: before(2)
          integer :: i, j
@@ -209,6 +221,7 @@ contains
 
       !> Put the springs without room on the lines that follow: all, the first, or those changed least.
       subroutine change_lines(all_of_them)
+         !> Whether all springs without room change their lines
          logical, intent(in) :: all_of_them
          logical :: is_unique
          integer :: most, j
@@ -239,7 +252,7 @@ contains
    subroutine follow_through(path, found)
       !> The mark of its springs is the corner
       class(static_path), intent(inout) :: path
-      !> Not where the path leads back to where it came from
+      !> Whether there is a way out other than that on which the path has come
       logical, intent(out) :: found
 
       call follow_gaps(path, together, found)
@@ -248,10 +261,14 @@ contains
       call follow_gaps(path, same_rate, found)
    end subroutine follow_through
 
-   !> The same, with the share of their gaps within which springs turn back at once.
+   !> Follow the rates through a corner as `follow_through` describes, with a given share of their gaps within
+   !> which springs turn back at once.
    subroutine follow_gaps(path, at_once, found)
+      !> The mark of its springs is the corner
       class(static_path), intent(inout) :: path
+      !> Share of a gap within which springs turn back together
       real(wp), intent(in) :: at_once
+      !> Whether there is a way out other than that on which the path has come
       logical, intent(out) :: found
       !> Virtual motions of the springs, and gaps; their weights in the direction of the path; stiffnesses of
       !> their lines ahead and of those on which they go back
@@ -262,6 +279,7 @@ contains
       integer, dimension(path%moving) :: ahead, line, heading
       !> Whether the line on which it goes back is known
       logical :: is_known(path%moving)
+      !> Lines of a spring: ahead of the corner, that on which it came, that on which it goes back
       integer, parameter :: on = 0, came = 1, back = 2
       integer :: i, m, sense, pivots
 
@@ -305,8 +323,9 @@ contains
 
    contains
 
-      !> Rates; those that are round-off of what they were send no spring either way.
+      !> Find rates; those that are round-off of the rates before the corner send no spring either way.
       subroutine find_rates(direction)
+         !> +1 or -1: in which the driven quantity moves
          integer, intent(in) :: direction
 
          call path%solve_line(direction, found)
@@ -325,8 +344,11 @@ contains
          end do
       end subroutine go_ahead
 
-      !> The springs that are blocked first change their lines.
+      !> Move the springs virtually at the present rates until the first ones come to where they change their
+      !> lines, and change these. `heading` gets their directions, 0 for the others.
       subroutine change_first()
+         !> Virtual motion at which a spring changes its line, and how far ahead that is, in units of the
+         !> rates; the line that it changes to
          real(wp) :: at(m), clearance(m), least
          integer :: next(m), blocked(m), count, way, i
          logical :: is_blocked(m)
@@ -373,8 +395,9 @@ contains
          end do
       end subroutine change_first
 
-      !> Put a spring on one of its lines, for rates alone.
+      !> Put a spring on one of its lines, for rates alone: only its stiffness changes.
       subroutine change(i, next)
+         !> Spring, and its line: `on`, `came` or `back`
          integer, intent(in) :: i, next
          real(wp) :: k
 
@@ -393,7 +416,8 @@ contains
 
    end subroutine follow_gaps
 
-   !> A joint in compression whose layers together resist no more of it at the corner has lost its axial load.
+   !> Look for a joint of layers that falls: it is in compression, and its layers together resist no more of
+   !> it on the lines ahead of the corner. It has lost its axial load, which the summary reports.
    subroutine find_fall(path)
       !> The mark of its springs is the corner
       class(static_path), intent(inout) :: path
@@ -424,6 +448,7 @@ contains
    !> turned at one place more than once has several, one in the other.
    subroutine leave(springs, i, side)
       type(spring_array), intent(inout) :: springs
+      !> Spring, and direction: +1 or -1
       integer, intent(in) :: i, side
       integer, parameter :: most_lines = 8
       integer :: lines
@@ -435,9 +460,10 @@ contains
       end do
    end subroutine leave
 
-   !> Whether a spring is on an end that belongs to its line.
+   !> Whether a spring is on an end that belongs to its line (a closed end).
    pure logical function is_on_closed_end(springs, i, heading)
       type(spring_array), intent(in) :: springs
+      !> Spring, and which end: +1 upper, -1 lower
       integer, intent(in) :: i, heading
 
       if (heading > 0) then
@@ -447,7 +473,8 @@ contains
       end if
    end function is_on_closed_end
 
-   !> Whether a structure whose displacement is driven has no strength left.
+   !> Whether a structure whose displacement is driven has no strength left: its force is next to nothing
+   !> beside its peak.
    pure logical function is_spent(path)
       class(static_path), intent(in) :: path
 
@@ -457,6 +484,7 @@ contains
    !> Report why the path cannot be continued.
    subroutine report_no_line(path, target, error)
       class(static_path), intent(in) :: path
+      !> Displacement [m] or force [N] that the path is on the way to
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: remark

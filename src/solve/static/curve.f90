@@ -48,7 +48,8 @@ module rbs_solve_static_curve
 
 contains
 
-   !> Make the curve from a point to the next one.
+   !> Make the curve from a point to the next one; `lines` is listed before by the caller. Deformations of
+   !> points are those of the springs, then of the layers of joints.
    subroutine set(self, structure, near, far)
       class(curve_type), intent(inout) :: self
       class(structure_type), intent(in) :: structure
@@ -68,7 +69,8 @@ contains
       self%least(2) = self%least(1)/structure%total_height
    end subroutine set
 
-   !> How fast the joints move the top, by which round-off of their rates is measured.
+   !> How fast the joints move the top [m per unit of the parameter], by which round-off of their rates is
+   !> measured.
    pure real(wp) function motion_of(structure, point) result(motion)
       class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: point
@@ -80,7 +82,7 @@ contains
       end if
    end function motion_of
 
-   !> Set rates that are round-off to zero.
+   !> Rates of the springs at a point, with those that are round-off set to zero.
    pure function clean(structure, point) result(rate)
       class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: point
@@ -95,7 +97,8 @@ contains
       end do
    end function clean
 
-   !> Whether the stride has been small enough for its tangents to determine the path between.
+   !> Whether the curve is so short that its tangents determine the path between its ends: no body turns far,
+   !> and nothing is far from the tangent at the near end.
    pure logical function is_gentle(self, structure)
       class(curve_type), intent(in) :: self
       class(structure_type), intent(in) :: structure
@@ -105,6 +108,7 @@ contains
          change = self%far%q - self%near%q
          rotation = structure%largest_rotation(change)
          step = max(rotation, maxval(abs(change), mask=slips)/height)
+         ! Distance of the far end from the tangent
          change = change - self%length*self%near%rate
          is_gentle = rotation <= 2.0_wp*most_rotation .and. &
                      max(structure%largest_rotation(change), maxval(abs(change), mask=slips)/height) &
@@ -117,8 +121,9 @@ contains
    !> smallest is that of the straightest curve.
    pure function work(self, force, displacement, force_rate, displacement_rate)
       class(curve_type), intent(in) :: self
-      !> At both ends
+      !> At both ends of the curve; the rates are per unit of the parameter
       real(wp), intent(in) :: force(2), displacement(2), force_rate(2), displacement_rate(2)
+      !> Result: by the trapezoidal rule, and the correction; three forms of it
       real(wp) :: work(2), correction(3)
 
       associate (rise => force(2) - force(1), step => displacement(2) - displacement(1), &
@@ -146,6 +151,7 @@ contains
       least = 1.0_wp
       sense = sign(1.0_wp, self%length)
       do i = 1, size(self%is_rotation)
+         ! +1 or -1: the direction of a one-way line, 0: the line is for both directions
          if (self%lines%one_way(i) == 0) cycle
          largest = max(abs(self%near%v(i)), abs(self%far%v(i)), &
                        self%least(merge(2, 1, self%is_rotation(i)))/same_rate)
@@ -164,6 +170,8 @@ contains
       if (maxval(abs(self%far%q - self%near%q)) <= noise*least_motion) return
       do i = 1, size(self%is_rotation)
          associate (one_way => self%lines%one_way(i))
+            ! +1 or -1: direction of a one-way line, which has no end to the rear; 0: a line for both
+            ! directions
             if (one_way /= 0) hides = hides_turn(self, i, one_way)
             if (one_way >= 0 .and. .not. hides) hides = passes(self, i, 1, self%lines%upper(i))
             if (one_way <= 0 .and. .not. hides) hides = passes(self, i, -1, self%lines%lower(i))
@@ -172,15 +180,17 @@ contains
       end do
    end function hides_event
 
-   !> Whether a deformation is beyond an end at the far point or between.
+   !> Whether the deformation of spring or layer i is beyond an end of its line at the far point or between.
    pure logical function passes(self, i, side, finish)
       type(curve_type), intent(in) :: self
+      !> Spring or layer, and which end: +1 upper, -1 lower
       integer, intent(in) :: i, side
+      !> Deformation at that end [m or rad]
       real(wp), intent(in) :: finish
       real(wp) :: c(4), peak(2), allowance
 
       passes = .false.
-      ! The deformation at both points, and its rates there.
+      ! Deformation at both ends of the curve, and its slopes there.
       c = cubic_of(self, i)
       ! An end at infinity is never reached.
       if (side*finish > max(side*c(1), side*c(2)) + beyond_ends*(abs(c(3)) + abs(c(4))) .or. &
@@ -193,19 +203,22 @@ contains
                any(side*(peak - finish) > max(allowance, on_the_end*abs(finish)))
    end function passes
 
-   !> Whether a spring on a one-way line turns back and turns again between the ends.
+   !> Whether a spring or layer on a one-way line turns back and turns again between the ends of the curve.
    pure logical function hides_turn(self, i, one_way)
       type(curve_type), intent(in) :: self
+      !> Spring or layer, and the direction of its line, +1 or -1
       integer, intent(in) :: i, one_way
       real(wp) :: c(4), share(2), peak(2)
 
+      ! The shares of the way at which the cubic turns, in order; 1 where it does not.
       c = cubic_of(self, i)
       share = turns_of(c)
       peak = cubic_at(share, c(1), c(2), c(3), c(4))
       hides_turn = share(2) < 1.0_wp .and. one_way*(peak(1) - peak(2)) > no_return*max(abs(c(1)), abs(c(2)))
    end function hides_turn
 
-   !> Deformation of a spring at both ends, and its slopes there by the share of the parameter.
+   !> Deformation of spring or layer i at both ends of the curve, and its slopes there by the share of the
+   !> way, from 0 to 1.
    pure function cubic_of(self, i) result(c)
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i
@@ -214,7 +227,7 @@ contains
       c = [self%near%d(i), self%far%d(i), self%length*self%near%v(i), self%length*self%far%v(i)]
    end function cubic_of
 
-   !> The curve at a value of the parameter, as a guess of a point.
+   !> The point of the curve at a value of the parameter, as a guess that Newton's method starts from.
    pure subroutine guess(self, t, point)
       class(curve_type), intent(in) :: self
       real(wp), intent(in) :: t

@@ -114,6 +114,7 @@ contains
          if (self%task%stops()) return
          if (.not. abs(self%goal - self%current%t) > 0.0_wp) exit
          direction = merge(1, -1, self%goal > self%current%t)
+         ! Where the path turns, springs that have come to an end may go back.
          if (direction /= self%last_direction) self%arrived = 0
          self%last_direction = direction
          if (self%direction /= direction) then
@@ -139,7 +140,9 @@ contains
    !> Rates of the column on the present lines of its springs.
    subroutine solve_line(self, direction, found)
       class(curved_path), intent(inout) :: self
+      !> +1 or -1: in which the parameter of the path moves
       integer, intent(in) :: direction
+      !> Whether there are unique rates, under a driven force those of a stable column
       logical, intent(out) :: found
 
       call self%equilibrium%solve(self%springs, self%current, found)
@@ -152,10 +155,14 @@ contains
    !> Go on toward the target, at the most to the next event. A stride that fails is cut in halves.
    subroutine take_stride(self, target, error)
       class(curved_path), intent(inout) :: self
+      !> Displacement [m] or force [N], for messages
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
+      !> Way to the goal, length of the stride, a length that is nothing, end of the stride (all in units of
+      !> the parameter); largest rotation of a body per unit of it
       real(wp) :: distance, length, shortest, limit, rotation_rate
       integer :: cuts
+      !> Whether the stride was taken; whether its end is so near that it is taken along the tangent
       logical :: done, near
 
       call list_lines(self%springs, self%curve%lines)
@@ -216,7 +223,7 @@ contains
          if (done) call accept(turns, works)
       end subroutine try_stride
 
-      !> Go to the point that was found.
+      !> Go to the point that was found: works, springs and present state of the path.
       subroutine accept(turns, works)
          !> Whether a motion turns back there
          logical, intent(in) :: turns
@@ -279,6 +286,7 @@ contains
          direction = self%last_direction
          associate (springs => self%springs, trial => self%trial)
             do i = 1, self%moving
+               ! Layered joints follow below; round-off must not take a spring off its line.
                if (springs%on_plane(i)) cycle
                call springs%advance_on_branch(i, min(max(trial%q(i), springs%lower(i)), springs%upper(i)))
                if (.not. is_on_end(springs, i, trial%q(i), direction*trial%rate(i))) cycle
@@ -300,6 +308,7 @@ contains
    !> Report why the path cannot be continued.
    subroutine report_no_path(self, target, error)
       class(curved_path), intent(in) :: self
+      !> Displacement [m] or force [N] that the path is on the way to
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: state, weakest
@@ -324,11 +333,15 @@ contains
       end if
    end subroutine report_no_path
 
-   !> Corrections that take the springs to equilibrium at the displacement of the top under the axial load.
+   !> Corrections that take the springs to equilibrium at the present displacement of the top, or under the
+   !> present lateral force, and the present axial load. What the path drives is set back afterwards.
    subroutine find_balance(self, by_force, correction, force, found)
       class(curved_path), intent(inout) :: self
+      !> Whether the lateral force is held, else the displacement of the top
       logical, intent(in) :: by_force
+      !> Corrections of the deformations (unknowns), and of the lateral force [N]
       real(wp), intent(out) :: correction(:), force
+      !> Whether there are unique ones
       logical, intent(out) :: found
 
       self%current%q = self%springs%d
@@ -357,7 +370,7 @@ contains
       unbalance = self%equilibrium%unbalance(self%springs, self%current)
    end function unbalance
 
-   !> The springs are where the path begins.
+   !> Take the present deformations of the springs as the point where the path begins.
    subroutine reset_reference(self)
       class(curved_path), intent(inout) :: self
 
@@ -374,7 +387,7 @@ contains
       self%load_work = self%load_now*self%equilibrium%unit_top_load%potential_energy(self%current%q)
    end subroutine reset_reference
 
-   !> Present to a tape where the path is and how far it may stride.
+   !> Save or restore, whichever the stream is set to, where the path is and how far it may stride.
    subroutine serialize(self, stream)
       class(curved_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

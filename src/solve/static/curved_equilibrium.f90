@@ -83,11 +83,12 @@ module rbs_solve_static_curved_equilibrium
 
 contains
 
-   !> Make room for a column.
+   !> Make room for a column, with the axial forces on it and the scale of the pivots.
    subroutine create(self, column, by_force, varies)
       class(curved_equilibrium), intent(out) :: self
       !> Under the axial load with which the path begins
       class(column_type), intent(in), target :: column
+      !> Whether the force is driven, else the displacement; whether the axial load varies
       logical, intent(in) :: by_force, varies
       real(wp) :: stiffness(column%unknowns)
       integer :: m
@@ -120,6 +121,8 @@ contains
       call self%tangent%create(m, self%per, stiffness)
    end subroutine create
 
+   !> Axial forces of a column that do work on rotations of bodies (1), on slips (2) and on openings (3) (n,
+   !> 3) [N]; with small displacements only those on openings do.
    subroutine list_axial_forces(column, axial)
       class(column_type), intent(in) :: column
       real(wp), allocatable, intent(out) :: axial(:, :)
@@ -131,7 +134,7 @@ contains
       axial(:, 2) = column%axial_slip
    end subroutine list_axial_forces
 
-   !> Residual and tangent at a point, and its displacement.
+   !> Find the residual and the tangent at a point; the point gets its axial load and displacement.
    subroutine assemble(self, springs, point)
       type(curved_equilibrium), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -147,6 +150,7 @@ contains
          self%pushed = self%lift
          if (springs%axial_load_varies) then
             self%f(:) = self%f - springs%centre*(point%axial_load + self%above - springs%reference_axial_load)
+            ! The moment of a joint on its plane falls with N by `centre`, on the bodies above and below.
             do j = 1, size(springs%layered)
                i = self%column%location(springs%layered(j))%index*self%per
                self%pushed(i) = self%pushed(i) + springs%centre(springs%layered(j))
@@ -166,7 +170,8 @@ contains
    !> Generalised loads -dA/dz, arms dx_T/dz and stiffness d2A/dz2 under axial forces.
    subroutine find_loads(self, axial, q, force, load, top)
       class(curved_equilibrium), intent(inout) :: self
-      !> See `constant`; deformations of the joints (n, per)
+      !> Axial forces on rotations of bodies, slips and openings (n, 3) [N]; deformations of the joints (n,
+      !> per)
       real(wp), intent(in) :: axial(self%column%n, 3), q(self%column%n, self%per)
       !> Lateral force [N]
       real(wp), intent(in) :: force
@@ -256,8 +261,11 @@ contains
 
    !> Changes of the deformations of the joints from those of the unknowns joint by joint.
    pure subroutine to_joints(n, per, z, q)
+      !> Numbers of joints, and of unknowns of a joint
       integer, intent(in) :: n, per
+      !> Slip, opening if there is one, and absolute rotation of each joint
       real(wp), intent(in) :: z(per, n)
+      !> Slip, relative rotation, opening if there is one
       real(wp), intent(out) :: q(n, per)
       real(wp) :: below
       integer :: i
@@ -275,7 +283,9 @@ contains
    subroutine solve(self, springs, point, found)
       class(curved_equilibrium), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      !> Its place on the path, deformations and force; gets its displacement and rates
       type(path_point), intent(inout) :: point
+      !> Whether there is a unique correction of bounded size
       logical, intent(out) :: found
       real(wp) :: residual, y(2)
       integer :: n, per
@@ -325,6 +335,7 @@ contains
    !> Largest change of slips, relative rotations and openings, in shares of the largest of their kind.
    pure real(wp) function size_of(self, change, q) result(largest)
       class(curved_equilibrium), intent(in) :: self
+      !> Change, and deformations that it is made from (unknowns)
       real(wp), intent(in) :: change(:), q(:)
       real(wp) :: reach, most, least
       integer :: i, n
@@ -346,6 +357,7 @@ contains
    !> Remember the largest deformations of each kind.
    pure subroutine remember(self, q)
       class(curved_equilibrium), intent(inout) :: self
+      !> Deformations: slips, relative rotations, openings if there are any (unknowns)
       real(wp), intent(in) :: q(:)
       integer :: i, n
 
@@ -362,6 +374,7 @@ contains
       type(path_point), intent(inout) :: point
       real(wp) :: displacement
 
+      ! `assemble` sets the displacement by the deformations; that of the path stays.
       displacement = point%displacement
       call assemble(self, springs, point)
       point%displacement = displacement

@@ -43,8 +43,9 @@ contains
    !> the limit, else to the limit; not back beyond the present point.
    subroutine find_event(self, limit, change)
       class(curve_search), intent(inout) :: self
+      !> Value of the parameter to go to at the most
       real(wp), intent(in) :: limit
-      !> Of the deformations, to be added to
+      !> Change of the deformations, to which the motion is added
       real(wp), intent(inout), optional :: change(:)
       real(wp) :: clearance, distance, finish
       integer :: i, side
@@ -56,6 +57,7 @@ contains
             associate (rise => self%direction*trial%v(i))
                if (.not. abs(rise) > 0.0_wp) cycle
                side = merge(1, -1, rise > 0.0_wp)
+               ! Back on a one-way line there is no end, but a turn, which `find_turn` finds.
                if (lines%one_way(i) == -side) cycle
                distance = side*(merge(lines%upper(i), lines%lower(i), side > 0) - trial%d(i))
                if (distance < clearance*abs(rise)) then
@@ -86,7 +88,7 @@ contains
                        point%d, point%v)
    end subroutine move_to
 
-   !> The layer of a joint that is on the end of its line at the point that is tried, 0 for none.
+   !> Which layer of a joint, from 1, is on the end of its line at the point that is tried; 0 for none.
    pure integer function layer_of(self, joint)
       class(curve_search), intent(in) :: self
       integer, intent(in) :: joint
@@ -101,7 +103,7 @@ contains
    !> Move the point that is tried along its tangent.
    subroutine move(self, step)
       class(curve_search), intent(inout) :: self
-      !> Of the parameter
+      !> Change of the parameter
       real(wp), intent(in) :: step
 
       associate (trial => self%trial)
@@ -117,8 +119,11 @@ contains
    !> Newton's method from the point that is tried to the first event before a limit, or to the limit.
    subroutine find_point(self, limit, with_events, found)
       class(curve_search), intent(inout) :: self
+      !> Value of the parameter to go to at the most
       real(wp), intent(in) :: limit
+      !> Whether the point is that of an event, if there is one before the limit
       logical, intent(in) :: with_events
+      !> Whether Newton's method has converged
       logical, intent(out) :: found
       real(wp) :: change(size(self%current%q)), share, last_share
       logical :: regular
@@ -154,7 +159,7 @@ contains
       end associate
    end subroutine find_point
 
-   !> The point where the first motion turns back, by false position.
+   !> Find, by false position, the point of the curve where the first motion on a one-way line turns back.
    subroutine find_turn(self, done)
       class(curve_search), intent(inout) :: self
       !> Whether it was found
@@ -170,11 +175,13 @@ contains
       if (.not. done) return
       do i = 1, 60
          reached = line%next()
+         ! False position may be slow beside a root: then halve.
          if (i > 40) reached = 0.5_wp*(line%low + line%high)
          call self%curve%guess(reached, self%trial)
          call find_point(self, reached, .false., done)
          if (.not. done) return
          value = self%curve%least_rate(self%trial)
+         ! `least_rate` is `same_rate` where a rate vanishes, so that the point is just beyond the turn.
          if (abs(value) < 0.9_wp*same_rate) return
          call line%narrow(reached, value)
       end do
@@ -217,6 +224,7 @@ contains
          works(2) = sum(self%curve%work([current%axial_load, trial%axial_load], lift, &
                                         [current%axial_rate, trial%axial_rate], &
                                         [current%lift_rate, trial%lift_rate]))
+         ! Mean forces of the springs on their lines; layered joints have works of their own.
          f(:) = f - 0.5_wp*self%springs%k*change
          do j = 1, size(self%springs%layered)
             if (self%springs%axial_load_varies) f(self%springs%layered(j)) = 0.0_wp
@@ -233,7 +241,8 @@ contains
       end associate
    end subroutine find_works
 
-   !> Work of a layered joint on its plane.
+   !> Work on the way that was tried of layered joint i, whose moment is M = m + k phi - e N on its plane, e
+   !> being the `centre` [J].
    pure real(wp) function work_of_joint(self, i) result(work)
       class(curve_search), intent(in) :: self
       integer, intent(in) :: i

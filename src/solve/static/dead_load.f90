@@ -28,18 +28,22 @@ module rbs_solve_static_dead_load
 
 contains
 
-   !> Put the dead load on a frame: its axial forces, and the state in which every analysis begins.
+   !> Put the dead load on a frame: its members get their axial forces, and every analysis begins in the state
+   !> under the load.
    subroutine put_dead_load(frame, state, error)
       type(frame_type), intent(inout) :: frame
+      !> The state under the load; empty where the frame has none
       type(end_state), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
+      !> Compressions before a round; largest change of them in this round and in the last [N]
       real(wp) :: before(frame%members), change, last
       type(checkpoint_type) :: checkpoint
       type(spring_array) :: springs
       integer :: round
 
       if (.not. frame%is_loaded()) return
-      ! The axial forces that do second-order work are those which the load has on the path with their work.
+      ! Axial forces do second-order work, which changes the axial forces: the path is repeated until those
+      ! that it counts with are those that it ends with.
       change = huge(1.0_wp)
       do round = 1, most_rounds
          before = frame%element(:frame%members)%compression
@@ -64,12 +68,13 @@ contains
          call state%start_saving(frame, checkpoint, springs)
          call state%finish_saving()
       end if
-      ! The path has one row, from no load to all of it.
+      ! The path has one row, from no load to all of it: its number at the head of a message is left out.
       if (allocated(error)) error%message = 'dead load: '//error%message(len('row 1: ') + 1:)
    end subroutine put_dead_load
 
-   !> Report a frame that buckles under axial forces of its dead load while it is elastic: by the share of
-   !> them at which a pivot of its stiffness vanishes.
+   !> The path under the dead load has failed. If the elastic frame buckles under the axial forces found so
+   !> far, say so in place of that error: find by halving the share of the forces at which a pivot of the
+   !> stiffness vanishes.
    subroutine check_stability(frame, error)
       type(frame_type), intent(in) :: frame
       type(error_type), allocatable, intent(inout) :: error
@@ -81,6 +86,7 @@ contains
 
       if (.not. frame%axially_loaded .or. .not. any(frame%element%compression > 0.0_wp)) return
       loaded = frame
+      ! Parts that are built after the dead load do not carry it.
       call loaded%leave_out_later()
       call matrix%create(frame%unknowns, frame%half_width)
       tangent = frame%initial_tangent
@@ -99,6 +105,7 @@ contains
          call loaded%add_geometric(loaded%element%compression, matrix%band)
          call matrix%factor()
          if (matrix%negative == 0 .and. unstable == 0) then
+            ! It is stable under all of the forces: the error of the path stands.
             if (trial == 1) return
             low = share
          else
@@ -119,6 +126,7 @@ contains
 
       if (.not. frame%axially_loaded) return
       do i = 1, frame%members
+         ! With both ends held the critical force is 4 pi^2 E I/l^2.
          if (.not. frame%element(i)%buckles(frame%element(i)%compression)) cycle
          call fatal_error(error, analysis_failed, 'row 1: member '//trim(frame%member_name(i))// &
                           ' buckles between its ends: its compression of '// &
@@ -128,8 +136,8 @@ contains
       end do
    end subroutine check_members
 
-   !> Apply the dead load to the frame without load, along a straight path from nothing to all of it. The end
-   !> gives the compression of the members.
+   !> Apply the dead load to the frame without load, along a straight path from nothing to all of it. The
+   !> state at its end gives the compression of the members.
    subroutine load_once(frame, checkpoint, springs, error)
       type(frame_type), intent(inout), target :: frame
       type(checkpoint_type), intent(out) :: checkpoint
@@ -140,6 +148,7 @@ contains
       type(array_recorder), target :: nothing
       type(task_type), target :: task
 
+      ! Parts that are built later take no part; the load that grows belongs to `equilibrium`.
       bare = frame
       call bare%leave_out_later()
       call equilibrium%create(bare, .true.)

@@ -98,7 +98,7 @@ module rbs_solve_static_equilibrium
 
 contains
 
-   !> Make room for a structure.
+   !> Make room for a structure, and factor its initial stiffness.
    subroutine create(self, structure, of_dead_load)
       class(equilibrium_type), intent(out) :: self
       class(structure_type), intent(in), target :: structure
@@ -118,7 +118,7 @@ contains
       allocate (self%reach(m), source=1.0_wp)
       do i = 1, size(structure%group)
          associate (of => structure%group(i))
-            ! The group of a frame without springs has none.
+            ! A frame whose members have no springs has an empty group.
             if (of%last_spring < of%first_spring) cycle
             if (structure%location(of%first_spring)%kind /= flexure) cycle
             self%reach(of%first:of%first + (of%count - 1)*of%step:of%step) = structure%total_height
@@ -135,6 +135,7 @@ contains
       no_load = 0.0_wp
       if (structure%axially_loaded) call structure%axial_forces(no_load, self%axial)
       if (.not. of_dead_load) self%pattern = structure%pattern(lateral)%force
+      ! Joints in series need no factor.
       if (structure%in_series) return
       call initial%create(m, structure%half_width)
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, initial%band)
@@ -168,6 +169,7 @@ contains
       real(wp), intent(in) :: displacement, force
       !> Rates of the position (coordinates)
       real(wp), intent(inout), contiguous :: rate(:)
+      !> Whether there are unique ones, under a driven force those of a stable structure
       logical, intent(out) :: found
       real(wp) :: residual
 
@@ -200,11 +202,15 @@ contains
    subroutine follow_band(self, springs, by_force, residual, force, rate, found)
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      !> Whether the force is driven, else the displacement
       logical, intent(in) :: by_force
-      !> Of the displacement [m]
+      !> What the springs lack of the displacement [m]; lateral force [N], or share of the dead load
       real(wp), intent(in) :: residual, force
+      !> Rates of the position (coordinates)
       real(wp), intent(inout), contiguous :: rate(:)
+      !> Whether there are unique ones, under a driven force those of a stable structure
       logical, intent(out) :: found
+      !> Force of the rates and of the corrections, in multiples of the pattern
       real(wp) :: y(2)
       logical :: settled, shares, refines, is_hardened
 
@@ -253,11 +259,14 @@ contains
 
    contains
 
-      !> Rates with given stiffnesses of the springs.
+      !> Find rates with given stiffnesses of the springs: linearise, factor, solve, and refuse rates that no
+      !> stable structure has.
       subroutine find_rates(k, of_none, found)
+         !> Stiffness of the springs (springs)
          real(wp), intent(in), contiguous :: k(:)
-         !> Whether springs without stiffness have some
+         !> Whether springs without stiffness have a small one in `k`, which refinement takes away
          logical, intent(in) :: of_none
+         !> Whether there are unique rates without a part that moves without end
          logical, intent(out) :: found
 
          is_hardened = of_none
@@ -278,11 +287,14 @@ contains
          end if
       end subroutine find_rates
 
-      !> Changes per unit of the driven quantity (1), or by the residual (2), and the force of these changes.
+      !> Changes of the unknowns and of the position: per unit of the driven quantity (1), or by the residual
+      !> (2); `y` is the force of these changes.
       subroutine solve(j, displacement, regular)
+         !> Which changes: 1 or 2
          integer, intent(in) :: j
-         !> Where it is driven [m]
+         !> Change of the displacement, where it is driven [m]
          real(wp), intent(in) :: displacement
+         !> Whether there is a solution with its digits
          logical, intent(out) :: regular
          real(wp) :: signal(signals), more
          integer :: again
@@ -323,11 +335,15 @@ contains
          regular = .not. self%structure%loses_digits
       end subroutine solve
 
-      !> Change i under the load, or so that the driven displacement changes by one that is given.
+      !> Change i of the unknowns under `load`, or where the displacement is driven so that it changes by a
+      !> given value.
       subroutine solve_once(i, displacement, more, regular)
-         !> Column of the changes
+         !> Column of `change` that takes the result
          integer, intent(in) :: i
+         !> The given change of the displacement [m]
          real(wp), intent(in) :: displacement
+         !> Force on the pattern besides the load, by which the displacement is reached; 0 under a driven
+         !> force
          real(wp), intent(out) :: more
          logical, intent(out) :: regular
 
@@ -342,11 +358,14 @@ contains
 
    end subroutine follow_band
 
-   !> The band on the present lines, with its border where the displacement is driven.
+   !> Factor the band on the present lines, with its border where the displacement is driven.
    subroutine factor(self, k, by_force, found)
       class(equilibrium_type), intent(inout) :: self
+      !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
+      !> Whether the force is driven, else the displacement
       logical, intent(in) :: by_force
+      !> Whether the matrix is regular, under a driven force positive definite
       logical, intent(out) :: found
 
       associate (structure => self%structure, matrix => self%matrix)
@@ -365,10 +384,10 @@ contains
       end associate
    end subroutine factor
 
-   !> Whether the work of a correction is that of no stiffness, beside the initial one.
+   !> Whether the work of a correction is that of no stiffness, compared with the initial stiffness.
    pure logical function has_no_stiffness(springs, initial, motion, work)
       integer, intent(in) :: springs
-      !> Stiffness and motion of the springs; twice the work [J]
+      !> Initial stiffness and motion of the springs; twice the work of the correction [J]
       real(wp), intent(in) :: initial(springs), motion(springs), work
 
       has_no_stiffness = abs(work) < no_stiffness*sum(initial*motion**2)
@@ -377,15 +396,16 @@ contains
    !> Springs without stiffness share a motion as with a hardening in proportion to their initial stiffness,
    !> which the refinement takes away.
    elemental real(wp) function with_hardening(k, initial)
+      !> Present and initial stiffness of a spring
       real(wp), intent(in) :: k, initial
 
       with_hardening = merge(k, hardening_of_none*initial, abs(k) > no_stiffness*initial)
    end function with_hardening
 
-   !> Work of the load per unit of it and of the driven quantity.
+   !> Work of the load per unit of it and per unit of the driven quantity.
    real(wp) function work_rate(self, rate) result(work)
       class(equilibrium_type), intent(in) :: self
-      !> Of the deformations (springs)
+      !> Rates of the position (coordinates)
       real(wp), intent(in), contiguous :: rate(:)
 
       if (self%of_dead_load) then
@@ -395,10 +415,11 @@ contains
       end if
    end function work_rate
 
-   !> The largest force out of equilibrium where the springs are.
+   !> Find the largest force out of equilibrium where the springs are, which `unbalance` keeps.
    subroutine find_unbalance(self, springs, force)
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      !> Lateral force [N], or share of the dead load
       real(wp), intent(in) :: force
       integer :: i
 
@@ -418,10 +439,12 @@ contains
       end associate
    end subroutine find_unbalance
 
-   !> The residual of the coupled unknowns where the springs are, and the largest of it.
+   !> Residual of the unknowns where the springs are, and the largest of it; under a growing dead load also
+   !> the load per unit, which follows the present lines.
    subroutine find_residual(self, springs, force)
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      !> Lateral force [N], or share of the dead load
       real(wp), intent(in) :: force
       real(wp) :: signal(signals)
       integer :: i
@@ -502,7 +525,8 @@ contains
       end associate
    end subroutine follow_diagonal
 
-   !> Save or restore the rates; those that are restored are not of the last factor.
+   !> Save or restore, whichever the stream is set to, the rates. The factor is not saved, so that rates that
+   !> are restored do not serve for the next lines.
    subroutine serialize(self, stream)
       class(equilibrium_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

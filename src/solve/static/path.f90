@@ -77,7 +77,7 @@ module rbs_solve_static_path
       !> direction on the line found last: +1, -1, 0 for no line
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp, control = 0.0_wp
       integer :: direction = 0
-      !> Last motion of it
+      !> Direction of its last motion
       integer :: last_direction = 0
       !> Change of the position per unit of the driven quantity, in its direction (coordinates)
       real(wp), allocatable :: rate(:)
@@ -110,7 +110,8 @@ module rbs_solve_static_path
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
       !> Driven quantity where the way to the present target begins, and the number of the target, from 0
       real(wp) :: control_begin = 0.0_wp
-      !> Force and displacement there, and the sign of the displacement that a positive force makes
+      !> Force [N] and displacement [m] where the path begins; the sign of the displacement that a positive
+      !> force makes, 0 as long as it is not known
       real(wp), private :: first_point(2) = 0.0_wp, sense = 0.0_wp
       integer, private :: number = 0
       !> Tolerances of a state of the structure, and whether the present point violates them
@@ -152,7 +153,9 @@ module rbs_solve_static_path
       subroutine solve_line_interface(self, direction, found)
          import :: static_path
          class(static_path), intent(inout) :: self
+         !> +1 or -1: in which the driven quantity moves
          integer, intent(in) :: direction
+         !> Whether there are unique ones, under a driven force those of a stable structure
          logical, intent(out) :: found
       end subroutine solve_line_interface
 
@@ -161,9 +164,11 @@ module rbs_solve_static_path
       subroutine balance_interface(self, by_force, correction, force, found)
          import :: static_path, wp
          class(static_path), intent(inout) :: self
+         !> Whether the lateral force is held, else the displacement of the top
          logical, intent(in) :: by_force
          !> Of the deformations (unknowns), and of the lateral force [N]
          real(wp), intent(out) :: correction(:), force
+         !> Whether there are unique ones
          logical, intent(out) :: found
       end subroutine balance_interface
 
@@ -183,8 +188,9 @@ module rbs_solve_static_path
 
 contains
 
-   !> Number of rows kept of m when every n-th and the last are.
+   !> Number of rows that are kept of m when every n-th, from the first on, and the last are.
    elemental integer function kept_rows(m, every)
+      !> Rows in all; n, or `unset_integer` for all rows
       integer, intent(in) :: m, every
 
       kept_rows = 0
@@ -195,9 +201,11 @@ contains
       end if
    end function kept_rows
 
-   !> The structure as it is given, its springs without load.
+   !> Make the springs of the structure, under its constant axial forces and not yet moved, and room for the
+   !> path.
    subroutine prepare(self, by_force, moving)
       class(static_path), intent(inout) :: self
+      !> Whether the force is driven, else the displacement
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
@@ -212,14 +220,16 @@ contains
       allocate (self%rotation(self%structure%n))
    end subroutine prepare
 
-   !> Take the present deformations of the springs as the point where the path begins.
+   !> Take the present deformations of the springs as the point where the path begins: it is on no line yet.
+   !> Curved paths have more to set, in a procedure of their own.
    subroutine reset_reference(self)
       class(static_path), intent(inout) :: self
 
       self%direction = 0
    end subroutine reset_reference
 
-   !> Save or restore the memory common to all paths; solvers add their own.
+   !> Save or restore, whichever the stream is set to, the memory common to all paths; each kind of path adds
+   !> its own.
    subroutine serialize_path(self, stream)
       class(static_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -229,7 +239,8 @@ contains
       call stream%item(self%rate)
    end subroutine serialize_path
 
-   !> The axial springs follow their lines to the forces of load and weight.
+   !> The axial springs follow their lines to the forces of axial load and weight, tension positive. An error
+   !> names the first spring that cannot reach its force.
    subroutine compress(self, error)
       class(static_path), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
@@ -271,7 +282,8 @@ contains
       energy = self%energies()
       call begin_check(self%check, self%structure, self%springs, energy%residual)
       if (task%leaps) self%check%work = leap_work_tolerance
-      ! A continued path has forces and works from before, with their round-off.
+      ! A continued path has forces and works from before, with their round-off: this check is for the scales
+      ! that it finds, and its verdict is dropped.
       call self%check_point(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
       self%violates_balance = .false.
@@ -343,14 +355,14 @@ contains
       end do
    end subroutine follow
 
-   !> Whether a joint of layers has lost its axial load.
+   !> Whether a joint of layers has lost its axial load, or a member has fallen.
    pure logical function loses_load(self)
       class(static_path), intent(in) :: self
 
       loses_load = self%springs%crushed_joint() > 0 .or. self%task%summary%fallen_member > 0
    end function loses_load
 
-   !> A path ends where a member loses its axial load, since a fall follows.
+   !> A path ends with an error where a member loses its axial load, since a fall follows.
    subroutine check_members(self, failure)
       class(static_path), intent(in) :: self
       type(error_type), allocatable, intent(inout) :: failure
@@ -372,7 +384,7 @@ contains
    !> rotations are linear and energies quadratic, so that nothing is larger between its ends.
    subroutine check_point(self, target, unbalance, on_ends, failure)
       class(static_path), intent(inout) :: self
-      !> On the way to which the path is, and the largest force out of equilibrium [N]
+      !> Target that the path is on the way to [m or N], and the largest force out of equilibrium [N]
       real(wp), intent(in) :: target, unbalance
       !> Whether springs were put on ends of their lines since the displacement was found
       logical, intent(in) :: on_ends
@@ -392,12 +404,14 @@ contains
          check%largest_force = max(check%largest_force, abs(self%force))
          check%largest_work = max(check%largest_work, abs(energy%input), abs(energy%spring), &
                                   abs(energy%axial))
+         ! Springs are measured only where their scales may grow, or would decide.
          if (abs(self%displacement) > check%farthest .or. balance_fault() > 0) then
             check%farthest = max(check%farthest, abs(self%displacement))
             call measure_springs(springs%count, self%structure%initial_stiffness, check%share, springs%d, &
                                  springs%d0, springs%f0, springs%k, check%largest_force, &
                                  check%stiff_force, works)
             reach = sum(abs(self%structure%arm*springs%d))
+            ! Parts without springs cost more: they are asked if the scales so far do not suffice.
             if (balance_fault() > 0) call update_parts(check, self%structure, springs)
             check%largest_displacement = max(check%largest_displacement, reach)
             check%stiff_work = max(check%stiff_work, works)
@@ -437,11 +451,16 @@ contains
 
    end subroutine check_point
 
-   !> Works of the springs, in size; their largest forces, which grow.
+   !> Scales of round-off by the springs: their largest force so far, the largest force and the sum of works
+   !> if they had their initial stiffness.
    pure subroutine measure_springs(n, initial, share, d, d0, f0, k, force, stiff_force, works)
       integer, intent(in) :: n
+      !> Initial stiffness; force at the top per force of the spring, 0 for axial springs; deformation; line
+      !> through (d0, f0) with slope k (springs)
       real(wp), intent(in) :: initial(n), share(n), d(n), d0(n), f0(n), k(n)
+      !> Sum of the works of initial stiffness on the deformations, each twice its energy [J]
       real(wp), intent(out) :: works
+      !> Largest forces at the top, which grow [N]
       real(wp), intent(inout) :: force, stiff_force
       real(wp) :: term
       integer :: i
@@ -456,10 +475,11 @@ contains
       end do
    end subroutine measure_springs
 
-   !> The path is at a corner, a share of the way to the present target: its figures belong to the summary,
-   !> and its row to those who keep every corner.
+   !> The path is at a corner: its figures belong to the summary, and its row to recorders that keep every
+   !> corner.
    subroutine record_corner(self, share)
       class(static_path), intent(inout) :: self
+      !> Share of the way to the present target that is behind, 0 to 1
       real(wp), intent(in) :: share
       type(error_type), allocatable :: error
 
@@ -471,7 +491,7 @@ contains
    !> force in the direction of loading begins or ends, and may be the largest.
    subroutine record_crossing(self, displacement, force)
       class(static_path), intent(inout) :: self
-      !> Of the other point: of the top [m], lateral [N]
+      !> Displacement of the top [m] and lateral force [N] at the other point
       real(wp), intent(in) :: displacement, force
 
       if (.not. displacement*self%displacement < 0.0_wp) return
@@ -479,7 +499,7 @@ contains
                                               (displacement - self%displacement))
    end subroutine record_crossing
 
-   !> Tell the summary of the present rotations.
+   !> Report the present rotations of the bodies to the summary, which keeps the largest in size.
    subroutine update_rotation(self)
       class(static_path), intent(inout) :: self
 
@@ -489,7 +509,7 @@ contains
       end associate
    end subroutine update_rotation
 
-   !> Tell the summary of the present force and displacement.
+   !> Report the present force and displacement to the summary, which keeps the peaks.
    subroutine update_peak(self)
       class(static_path), intent(inout) :: self
 
@@ -508,7 +528,7 @@ contains
    !> Keep the row of the present point.
    subroutine keep_row(self, number, error)
       class(static_path), intent(inout) :: self
-      !> Of the row, between two targets with the share of the way
+      !> Number of the row; between two targets with the share of the way as its fraction
       real(wp), intent(in) :: number
       type(error_type), allocatable, intent(inout) :: error
       type(response_type) :: response
@@ -520,7 +540,8 @@ contains
       call self%task%recorder%keep(self%structure, response, self%springs, self%springs%d, error)
    end subroutine keep_row
 
-   !> Whether a spring has reached the end that it moves to; with a way, also one that belongs to its line.
+   !> Whether a spring has reached the end that it moves to. An end that belongs to its line holds nothing up,
+   !> since the spring is still on the line there: it counts only where a way is given.
    pure logical function is_on_end(springs, i, d, rate, way)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
@@ -547,11 +568,13 @@ contains
       end if
    end function is_on_end
 
-   !> A spring that was put on the end of its line has moved the top by as little: that is where the top is.
+   !> A spring that was put exactly on the end of its line has moved the top by a last digit: the displacement
+   !> that is driven becomes that at which the top is, and the work on the way is added.
    subroutine snap_to_ends(self)
       class(static_path), intent(inout) :: self
       real(wp) :: top, reach
 
+      ! While the path is on a line no spring was put on an end.
       if (self%by_force .or. self%direction /= 0 .or. self%structure%kinematics == finite) return
       top = self%structure%top_displacement(self%springs%d)
       reach = sum(abs(self%structure%arm*self%springs%d))
@@ -577,7 +600,7 @@ contains
    subroutine arrive(self, i, rate)
       class(static_path), intent(inout) :: self
       integer, intent(in) :: i
-      !> Of the spring, of which only the sign counts
+      !> Rate of the spring, of which only the sign counts
       real(wp), intent(in) :: rate
 
       self%arrived(i) = merge(1, -1, rate > 0.0_wp)
@@ -587,7 +610,7 @@ contains
       self%direction = 0
    end subroutine arrive
 
-   !> Where the path is, for a message.
+   !> Where the path is, for a message. Under a growing dead load the driven force is a share of it.
    pure character(len=80) function state_of(path) result(text)
       class(static_path), intent(in) :: path
 
@@ -598,7 +621,7 @@ contains
       end if
    end function state_of
 
-   !> A target, for a message.
+   !> A target with its unit, for a message: a force, a displacement of the top, or a share of the dead load.
    pure character(len=40) function target_of(path, target) result(text)
       class(static_path), intent(in) :: path
       real(wp), intent(in) :: target
@@ -614,6 +637,7 @@ contains
    !> that nothing has happened to.
    pure character(len=80) function weakest_spring(path) result(text)
       class(static_path), intent(in) :: path
+      !> Shares of the initial stiffnesses that are left
       real(wp) :: left(path%moving)
 
       associate (structure => path%structure, m => path%moving)
@@ -623,11 +647,12 @@ contains
       end associate
    end function weakest_spring
 
-   !> Measure points from here on.
+   !> Begin to measure points: tolerances, and the smallest scales that they are shares of.
    subroutine begin_check(self, structure, springs, missing_work)
       type(row_check), intent(out) :: self
       class(structure_type), intent(in) :: structure
       type(spring_array), intent(in) :: springs
+      !> Residual of the energies at the start, which is no fault of the path [J]
       real(wp), intent(in) :: missing_work
       real(wp) :: d
       integer :: i
@@ -644,12 +669,13 @@ contains
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
       end do
       call update_parts(self, structure, springs)
+      ! Newton's method on a curve leaves more than round-off.
       if (structure%kinematics /= finite) return
       self%displacement = curve_displacement_tolerance
       self%work = curve_work_tolerance
    end subroutine begin_check
 
-   !> Forces and work of parts without springs.
+   !> Enlarge the scales of force and work by those of parts without springs.
    subroutine update_parts(self, structure, springs)
       type(row_check), intent(inout) :: self
       class(structure_type), intent(in) :: structure

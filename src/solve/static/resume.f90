@@ -21,15 +21,17 @@ module rbs_solve_static_resume
 
 contains
 
-   !> The structure without lateral force, under its axial load, or the state that another analysis ended in.
+   !> Begin a path: from the structure without lateral force under its axial load, or from the state that
+   !> another analysis ended in.
    subroutine begin_path(path, by_force, moving, varies, before, error)
       class(static_path), intent(inout) :: path
+      !> Whether the force is driven, else the displacement
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
       !> Whether the axial loads of layered joints vary
       logical, intent(in) :: varies
-      !> Empty where there is none
+      !> The state to begin in; empty: none
       type(end_state), intent(inout) :: before
       type(error_type), allocatable, intent(out) :: error
       type(energy_type) :: energy
@@ -99,8 +101,8 @@ contains
 
    end subroutine begin_path
 
-   !> Kind of a path: force or displacement is driven, and the axial load is constant or varies. A path can
-   !> take up the memory of one of its own kind.
+   !> Kind of a path as a number: 10 more where the force is driven, 100 more where the axial load varies. A
+   !> path can take up the memory of one of its own kind.
    pure integer function kind_of(path, varies)
       class(static_path), intent(in) :: path
       logical, intent(in) :: varies
@@ -108,7 +110,7 @@ contains
       kind_of = 1 + merge(10, 0, path%by_force) + merge(100, 0, varies)
    end function kind_of
 
-   !> The joints come to equilibrium at the displacement of the top.
+   !> The joints come to equilibrium while the displacement of the top is held.
    subroutine settle_at_top(path, error)
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
@@ -139,14 +141,19 @@ contains
       class(static_path), intent(inout) :: path
       !> Whether the lateral force is held, else the displacement of the top
       logical, intent(in) :: by_force
-      !> Least scale of a correction, a product as below [J]
+      !> Least scale of a correction, as `measure_of` measures it [J]
       real(wp), intent(in) :: least
       !> Most trials
       integer, intent(in) :: most
       !> Of the deformations (coordinates), and of the force [N]
       real(wp), intent(inout) :: correction(:), force_correction
+      !> Whether the joints have come to equilibrium; else the springs are at the last trial
       logical, intent(out) :: is_settled
+      !> Position of the trial, and the correction found there (coordinates)
       real(wp), dimension(path%structure%coordinates) :: q, next_correction
+      !> Correction of the force [N]; squares of the corrections before and now, product of a correction and
+      !> the next one [J]; share of a correction to be tried, and that reached; largest square of the
+      !> deformations
       real(wp) :: next_force, before, change, slope, share, now, largest
       type(false_position) :: line
       integer :: trials, on_line
@@ -154,6 +161,7 @@ contains
 
       q = path%springs%d
       is_settled = .false.
+      ! Corrections are measured against the deformations themselves.
       largest = max(least, measure_of(q, q))
       change = measure_of(correction, correction)
       trials = 0
@@ -193,6 +201,7 @@ contains
 
       !> Go on by a share of the correction, and find the next one there.
       subroutine try(part)
+         !> Share of the correction
          real(wp), intent(in) :: part
 
          trials = trials + 1
@@ -215,6 +224,7 @@ contains
    !> Keep the state in which the path ends.
    subroutine end_path(path, varies, after)
       class(static_path), intent(inout) :: path
+      !> Whether the axial load at the top varies
       logical, intent(in) :: varies
       type(end_state), intent(inout) :: after
       type(checkpoint_type) :: checkpoint
@@ -228,6 +238,7 @@ contains
    !> Numbers of the state in which the path ends, besides its springs.
    type(checkpoint_type) function checkpoint_of(path, varies) result(checkpoint)
       class(static_path), intent(inout) :: path
+      !> Whether the axial load at the top varies
       logical, intent(in) :: varies
       type(energy_type) :: energy
 
@@ -238,8 +249,10 @@ contains
       checkpoint%axial_load = path%load_now
       checkpoint%axial_force = path%structure%constant_axial
       if (varies) then
+         ! Present load at the top, the part of it that follows the lateral force, and the weight above
          checkpoint%axial_force = path%load_now + path%structure%axial_force_ratio*path%force &
                           + (path%structure%constant_axial - path%structure%axial_load)
+         ! Layered joints know theirs to the last bit.
          if (path%springs%axial_load_varies) then
             checkpoint%axial_force(path%springs%layered) = &
                path%springs%reference_axial_load(path%springs%layered)
@@ -251,6 +264,7 @@ contains
       checkpoint%at_begin = path%at_begin
       energy = path%energies()
       checkpoint%residual = energy%residual
+      ! The first load is the lateral force.
       checkpoint%load(1) = path%force
       checkpoint%method = kind_of(path, varies)
    end function checkpoint_of

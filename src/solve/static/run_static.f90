@@ -20,7 +20,8 @@ module rbs_solve_static_run_static
 
 contains
 
-   !> Static path through displacements of the top or lateral forces.
+   !> Static path through displacements of the top or lateral forces: a curve where rotations are exact or the
+   !> axial load at the top of a column varies, else a chain of straight lines.
    subroutine run_static(structure, by_force, target, task, error, axial_load)
       class(structure_type), intent(in), target :: structure
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
@@ -29,7 +30,7 @@ contains
       real(wp), intent(in) :: target(:)
       type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
-      !> Axial load at the top of a column at each target (m), not the constant one; empty: constant [N]
+      !> Axial load at the top of a column at each target (m) [N]; empty or absent: its constant one
       real(wp), intent(in), optional :: axial_load(:)
 
       class(structure_type), allocatable, target :: other
@@ -62,11 +63,13 @@ contains
          task%summary%reason = "newton is for frames, and columns with 'pdelta', under constant axial loads"
       end if
       if (curves) then
+         ! Only columns have paths that are curves.
          select type (column => loaded)
          class is (column_type)
             call trace_curved(column, by_force, target, pack(load, varies), task, error)
          end select
       else
+         ! The lateral load grows, not the dead load.
          call equilibrium%create(loaded, .false.)
          call trace_straight(loaded, equilibrium, by_force, target, task, error)
          if (allocated(error) .and. equilibrium%unstable > 0) then
@@ -77,7 +80,8 @@ contains
          end if
       end if
       if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
-         ! A column that could not be moved by a force may have buckled before.
+         ! A column that no force could move may have buckled before: its axial load times the factor is the
+         ! critical one.
          factor = loaded%critical_factor()
          if (factor <= 1.0_wp .and. task%summary%steps > 0) then
             error%message = 'row '//to_text(task%summary%steps)//': the axial load is '// &

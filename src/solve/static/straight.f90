@@ -65,10 +65,10 @@ module rbs_solve_static_straight
 
 contains
 
-   !> Follow the targets one after the other.
+   !> Follow the targets one after the other, for small rotations and constant axial loads.
    subroutine trace_straight(structure, equilibrium, by_force, target, task, error, checkpoint, springs)
       class(structure_type), intent(in), target :: structure
-      !> That of the structure
+      !> Equilibrium of the structure on the lines of its springs
       type(equilibrium_type), intent(inout), target :: equilibrium
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
@@ -76,7 +76,7 @@ contains
       real(wp), intent(in) :: target(:)
       type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
-      !> The end itself, in place of a state that is kept
+      !> State and springs in which the path ends; the caller takes both or none
       type(checkpoint_type), intent(out), optional :: checkpoint
       type(spring_array), intent(out), optional :: springs
       type(straight_path) :: path
@@ -99,12 +99,14 @@ contains
       springs = path%springs
    end subroutine trace_straight
 
-   !> Go on to a target.
+   !> Go on to a target: by leaps where the task asks for them, else from event to event. A leap that fails is
+   !> halved; where it cannot be shorter the events are followed.
    subroutine advance(self, target, error)
       class(straight_path), intent(inout) :: self
       !> Displacement [m] or force [N]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
+      !> Way to the target, length of a leap (both with the sign of their direction), and where it leads to
       real(wp) :: whole, length, next
       logical :: arrived
 
@@ -121,7 +123,7 @@ contains
          if (self%task%stops()) return
          next = target
          if (abs(next - self%control) > 1.5_wp*abs(length)) next = self%control + length
-         ! Springs turn as they must.
+         ! Corners behind a leap do not bind its springs: they may turn back.
          self%arrived = 0
          self%direction = 0
          call leap(self, next, arrived)
@@ -146,9 +148,14 @@ contains
    !> is missing, or a member fails.
    subroutine leap(self, next, arrived)
       class(straight_path), intent(inout) :: self
+      !> Driven quantity at the end of the leap [m or N]
       real(wp), intent(in) :: next
+      !> Whether the end is reached; else nothing has happened
       logical, intent(out) :: arrived
+      !> Rates at the start; first correction of the position and of the force
       real(wp) :: first(size(self%rate)), correction(size(self%rate)), force_correction, slope
+      !> Change of the driven quantity; displacement, force and energy at the start; motion and work of the
+      !> load
       real(wp) :: change, displacement, force, energy, moved, work, largest
 
       change = next - self%control
@@ -160,6 +167,8 @@ contains
       associate (line => self%equilibrium, springs => self%springs)
          if (arrived) then
             first = self%rate
+            ! Work is the integral of the force over the displacement; under a driven force, by parts, less
+            ! that of the displacement over the force. The slopes are those of the integrand.
             slope = merge(-line%displacement_rate, line%force_rate, self%by_force)
             correction = line%correction + change*first
             force_correction = line%force_correction + change*line%force_rate
@@ -201,13 +210,13 @@ contains
 
    end subroutine leap
 
-   !> Force by which a leap may be wrong as springs have turned in it: those whose rate at the end is opposite
-   !> to that at the start have gone some way and back.
+   !> Force by which a leap may be wrong as springs have turned in it: springs whose rates at start and end
+   !> are opposite have gone some way and back [N].
    pure real(wp) function force_of_turns(self, first, change) result(force)
       class(straight_path), intent(in) :: self
       !> Rates at the start (coordinates)
       real(wp), intent(in) :: first(:)
-      !> Of the driven quantity
+      !> Change of the driven quantity in the leap [m or N]
       real(wp), intent(in) :: change
       real(wp) :: share
       integer :: i
@@ -231,6 +240,7 @@ contains
       !> Displacement [m] or force [N]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
+      !> +1 or -1: toward the target; lines in a row that led no nearer to it
       integer :: direction, idle
       logical :: went_back
 
@@ -284,7 +294,8 @@ contains
 
    contains
 
-      !> On a way back the number of rows between targets does not fall.
+      !> Record the corner. Its number is the share of the way to the target, and on a way back that reached
+      !> before, so that numbers do not fall.
       subroutine report_corner()
          real(wp) :: share
 
@@ -296,7 +307,8 @@ contains
 
    end subroutine follow_events
 
-   !> The control moves back from here on; the first time of a loop counts for its energy.
+   !> The control moves back from here on: a snap-back. The first one of a loop is where the energy of the
+   !> loop is counted from.
    subroutine begin_loop(self)
       class(straight_path), intent(inout) :: self
 
@@ -309,9 +321,10 @@ contains
       self%loop_motion = 0.0_wp
    end subroutine begin_loop
 
-   !> Report that the way back has no end.
+   !> Report that the way back of a snap-back has no end: no displacement of the top holds the structure.
    subroutine report_fall(self, target, error)
       class(straight_path), intent(in) :: self
+      !> Displacement that the path is on the way to [m]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
 
@@ -329,7 +342,9 @@ contains
    !> Rates of the structure on the present lines of its springs.
    subroutine solve_line(self, direction, found)
       class(straight_path), intent(inout) :: self
+      !> +1 or -1: in which the driven quantity moves
       integer, intent(in) :: direction
+      !> Whether there are unique rates, under a driven force those of a stable structure
       logical, intent(out) :: found
 
       self%equilibrium%may_snap_back = self%passes
@@ -349,6 +364,7 @@ contains
       integer, intent(in) :: n
       !> Initial stiffnesses, and that of the structure under the displacement that is driven [N/m]
       real(wp), intent(in) :: initial(n), stiffness
+      !> Rates of the springs, of which those that are round-off become zero
       real(wp), intent(inout) :: rate(n)
       real(wp) :: largest
 
@@ -361,7 +377,10 @@ contains
    !> digit is a long way of the springs: these are corrected across the path, and the control follows.
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
+      !> +1 or -1: in which the driven quantity moves on the line
       integer, intent(in) :: direction
+      !> Way to the next end of a line; what the springs lack of the displacement [m]; way on the line by
+      !> which the correction is taken off, so that it is across the path
       real(wp) :: distance, residual, along
       logical :: turns
 
@@ -392,9 +411,11 @@ contains
       if (self%ends > 0) self%finish = self%start + direction*distance
    end subroutine begin_line
 
-   !> Share of the rates in a correction, measured by the initial stiffness.
+   !> How far a correction goes along the rates: the factor of the rates in it, measured by the initial
+   !> stiffness.
    pure real(wp) function share_along(n, weight, correction, rate) result(share)
       integer, intent(in) :: n
+      !> Initial stiffness, correction and rates of the springs
       real(wp), intent(in) :: weight(n), correction(n), rate(n)
       real(wp) :: square
       integer :: i
@@ -412,8 +433,9 @@ contains
    !> would be missing at the next corner. More than round-off moves no spring off its line.
    pure subroutine keep_within(n, d, correction, rate, lower, upper, q)
       integer, intent(in) :: n
+      !> Deformations before the correction, the correction, rates on the line, and ends of the lines
       real(wp), intent(in) :: d(n), correction(n), rate(n), lower(n), upper(n)
-      !> Deformations with their corrections
+      !> Deformations with their corrections, which are moved back to an end that they must not pass
       real(wp), intent(inout) :: q(n)
       integer :: i
 
@@ -430,7 +452,10 @@ contains
    !> Go along the line; each spring moves on its own line.
    subroutine go(self, control)
       class(straight_path), intent(inout) :: self
+      !> Driven quantity to go to [m or N]
       real(wp), intent(in) :: control
+      !> Way from where the line begins; force, displacement and motion of the load at its end; deformation of
+      !> a spring; way within which ends are reached at once
       real(wp) :: change, force, displacement, moved, d, way
       integer :: count, j
 
@@ -474,6 +499,7 @@ contains
          real(wp) :: at, motion, energy
 
          if (self%goes_back .or. .not. abs(self%control - self%loop_control) > 0.0_wp) return
+         ! The force, and the motion of the load still to come, where the loop closes
          associate (line => self%equilibrium)
             at = self%force_start + line%force_rate*(self%loop_control - self%start)
             motion = (1.0_wp + line%dead_load_work_rate)*(self%loop_control - self%control)
@@ -487,7 +513,7 @@ contains
 
    end subroutine go
 
-   !> The deformation of the spring that ends the line is exactly that of its end.
+   !> The line has ended: the spring that ends it gets exactly the deformation of its end.
    subroutine end_line(self)
       class(straight_path), intent(inout) :: self
       integer :: i
@@ -501,8 +527,11 @@ contains
    !> Corrections that take the springs to equilibrium at the displacement of the top, or under the force.
    subroutine find_balance(self, by_force, correction, force, found)
       class(straight_path), intent(inout) :: self
+      !> Whether the lateral force is held, else the displacement of the top
       logical, intent(in) :: by_force
+      !> Corrections of the deformations (coordinates), and of the lateral force [N]
       real(wp), intent(out) :: correction(:), force
+      !> Whether there are unique ones
       logical, intent(out) :: found
 
       call self%equilibrium%follow(self%springs, by_force, self%displacement, self%force, self%rate, found)
@@ -518,7 +547,7 @@ contains
       unbalance = self%equilibrium%unbalance
    end function unbalance
 
-   !> Save or restore the line that the structure is on.
+   !> Save or restore, whichever the stream is set to, the line that the structure is on.
    subroutine serialize(self, stream)
       class(straight_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

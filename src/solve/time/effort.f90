@@ -30,7 +30,8 @@ module rbs_solve_time_effort
 
 contains
 
-   !> Time that a run will take, within a factor of about three; it depends on the machine [s].
+   !> Time that a run will take by the method of its plan, within a factor of about three; it depends on the
+   !> machine [s].
    pure real(wp) function expected_seconds(structure, plan) result(seconds)
       class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: plan
@@ -41,7 +42,7 @@ contains
       if (structure%kinematics == finite) seconds = cost_of_finite*seconds
    end function expected_seconds
 
-   !> Number of steps, of an adaptive method at least.
+   !> Number of steps that a method takes by a plan; those that an adaptive method takes at least.
    pure real(wp) function steps_of(plan, method) result(steps)
       type(time_plan), intent(in) :: plan
       type(method_type), intent(in) :: method
@@ -50,7 +51,8 @@ contains
       if (method%adaptive) steps = max(steps, (plan%finish - plan%begin)/(method%limit_share*plan%limit))
    end function steps_of
 
-   !> Note before a long run; empty for a short one.
+   !> A sentence for the user before a long run: its expected time, and a faster method if there is one; empty
+   !> for a short run.
    subroutine long_run_note(structure, plan, text)
       class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: plan
@@ -71,6 +73,7 @@ contains
       other = method_named(faster)
       call frequency_bounds(structure, lowest, error)
       if (allocated(error)) return
+      ! The same run by the other method: its steps are a share of the longest period.
       short = plan
       short%method = faster
       short%steps = int(min(real(plan%intervals, wp) + (plan%finish - plan%begin)/ &
@@ -81,7 +84,7 @@ contains
              to_text(other%usual_error)//' in place of '//to_text(method%usual_error)
    end subroutine long_run_note
 
-   !> One digit is all that is known.
+   !> Round to one digit, as no more is known.
    elemental real(wp) function one_digit(seconds)
       real(wp), intent(in) :: seconds
       real(wp) :: unit

@@ -32,12 +32,15 @@ module rbs_solve_time_event
 
 contains
 
-   !> The first event of an attempt of length h.
+   !> The first event of an attempt: the spring that leaves its line at the earliest estimate; `spring` is 0
+   !> if none does.
    pure subroutine find_event(state, scheme, h, event)
       type(state_type), intent(in) :: state
       class(scheme_type), intent(in) :: scheme
+      !> Length of the attempt [s]
       real(wp), intent(in) :: h
       type(event_type), intent(out) :: event
+      !> Exit of one spring
       type(line_exit) :: one
       integer :: i
 
@@ -59,19 +62,20 @@ contains
       end associate
    end subroutine find_event
 
-   !> Whether a spring moves by no more in a step than round-off moves it: its velocity then has no
-   !> direction. The round-off of the forces has another sign on either side of an end, and a spring at rest
-   !> would turn from line to line for ever.
+   !> Whether spring i moves by no more in a step than round-off moves it: its velocity then has no direction.
+   !> The round-off of the forces has another sign on either side of an end, and a spring at rest would turn
+   !> from line to line for ever.
    pure logical function keeps_still(state, scheme, i, h)
       type(state_type), intent(in) :: state
       class(scheme_type), intent(in) :: scheme
       integer, intent(in) :: i
+      !> Length of the step [s]
       real(wp), intent(in) :: h
 
       keeps_still = max(abs(state%v(i)), abs(scheme%v(i))) <= round_off_of(state, i)*h
    end function keeps_still
 
-   !> Acceleration of an unknown that is the round-off of the forces [m/s2, rad/s2].
+   !> Acceleration of spring i that is the round-off of the forces [m/s2, rad/s2].
    pure real(wp) function round_off_of(state, i) result(least)
       type(state_type), intent(in) :: state
       integer, intent(in) :: i
@@ -79,7 +83,7 @@ contains
       least = round_off_of_sums*state%motion%structure%acceleration_scale(i, state%springs, state%load)
    end function round_off_of
 
-   !> A number, zero where it is not above its round-off.
+   !> A number, or zero where it is not larger in size than its round-off, `least`.
    elemental real(wp) function above_round_off(x, least)
       real(wp), intent(in) :: x, least
 
@@ -93,15 +97,15 @@ contains
       same_event = one%spring == other%spring .and. (one%turns .eqv. other%turns)
    end function same_event
 
-   !> Distance of the end of an attempt beyond an event: of a deformation beyond the end of its line, or the
-   !> velocity of a spring that is to turn back.
+   !> Distance by which the end of an attempt is beyond an event: of the deformation from the end of its line
+   !> [m or rad], or, of a spring that is to turn back, its velocity [m/s or rad/s].
    subroutine event_distance(state, scheme, event, now, distance, rate, round_off)
       type(state_type), intent(in) :: state
       class(scheme_type), intent(in) :: scheme
       type(event_type), intent(in) :: event
       !> Work arrays
       type(motion_result), intent(inout) :: now
-      !> With its rate in time and its round-off
+      !> The distance, its rate in time, and its round-off
       real(wp), intent(out) :: distance, rate, round_off
       real(wp) :: finish
 
@@ -120,14 +124,18 @@ contains
       end associate
    end subroutine event_distance
 
-   !> The exit from a line within a step.
+   !> How a spring leaves its line within a step: by an end, or by a turn on a one-way line. In the step its
+   !> velocity is linear in time. `exit` keeps the direction 0 where the spring stays on its line.
    pure subroutine find_exit(ends, unload_on_reversal, d, v, h, exit)
-      !> The ends of the line, from below and from above, and whether it unloads on reversal
+      !> Lower and upper end of the line; direction of a one-way line, which is left where the motion turns
+      !> back (+1, -1), 0: the line is for both directions
       real(wp), intent(in) :: ends(2)
       integer, intent(in) :: unload_on_reversal
       !> Deformation and velocity at the start of the step and at its end; length of the step [s]
       real(wp), intent(in) :: d(2), v(2), h
       type(line_exit), intent(out) :: exit
+      !> Time of the reversal [s], deformation then; way to the end of the line, share of the time that it
+      !> takes
       real(wp) :: reversal, furthest, far, share
       integer :: direction
 
@@ -161,6 +169,7 @@ contains
 
    contains
 
+      !> The end of the line on a side, +1 or -1.
       pure real(wp) function end_of(side)
          integer, intent(in) :: side
 
@@ -170,6 +179,7 @@ contains
       !> Whether a deformation is beyond the end of the line in a direction, by more than the last digits. The
       !> rear end of one that unloads on reversal does not count.
       pure logical function is_beyond(at, side)
+         !> Deformation, and direction: +1 or -1
          real(wp), intent(in) :: at
          integer, intent(in) :: side
 

@@ -50,9 +50,9 @@ module rbs_solve_time_finite_joint
 
 contains
 
-   !> A body that turns from one rotation by a change.
+   !> Directions of a body over a step in which it turns.
    pure subroutine turn_body(from, change, body)
-      !> [rad]
+      !> Rotation at the start of the step, and its change over the step [rad]
       real(wp), intent(in) :: from, change
       type(turned_body), intent(out) :: body
       real(wp) :: s, c, sg, sg_rate, half
@@ -81,9 +81,9 @@ contains
       body%eb_rate = sg_rate*[s, c] + 0.5_wp*body%tb
    end subroutine turn_body
 
-   !> A body at one rotation.
+   !> Directions of a body at one rotation: all means are the values there.
    pure subroutine body_at(rotation, body)
-      !> [rad]
+      !> Rotation [rad]
       real(wp), intent(in) :: rotation
       type(turned_body), intent(out) :: body
 
@@ -102,8 +102,9 @@ contains
       !> The bodies over the step, and how their centroids have moved and turned (x, y, th)
       type(turned_body), intent(in) :: below, above
       real(wp), intent(in) :: moved_below(3), moved_above(3)
-      !> On return with D
+      !> Its gap D gets the mean and the value at the end of the step
       type(joint_type), intent(inout) :: joint
+      !> Slip [m], rotation [rad], opening [m]
       real(wp), intent(out) :: change(3)
       real(wp) :: moved(2)
 
@@ -116,10 +117,11 @@ contains
                            sum(below%em*moved) + sum(below%tb*joint%mean)*moved_below(3)]
    end subroutine joint_change
 
-   !> D at one state, from slip, rotation and opening.
+   !> The gap D of a joint at one state [m], from slip, rotation and opening.
    pure function joint_at(below, joint, deformation) result(d)
       type(turned_body), intent(in) :: below
       type(joint_type), intent(in) :: joint
+      !> Slip [m], rotation [rad], opening [m]
       real(wp), intent(in) :: deformation(3)
       real(wp) :: d(2)
 
@@ -147,7 +149,7 @@ contains
       type(joint_type), intent(in) :: joint
       !> Shear, moment and axial force (tension positive) [N, N m, N]
       real(wp), intent(in) :: force(3)
-      !> x, y, th
+      !> Forces along x and y [N] and moments about the centroids [N m], to which those of the joint are added
       real(wp), intent(inout) :: on_below(3), on_above(3)
       real(wp) :: p(2), f(3)
 
@@ -170,6 +172,7 @@ contains
       real(wp), intent(in) :: half, forces(3), k(3)
       !> Whether the joint does not open: its axial force is an unknown
       logical, intent(in) :: closed
+      !> Rows and columns: x, y, th of the body below, axial force, x, y, th of the body above
       real(wp), intent(out) :: tangent(local, local)
       real(wp) :: moved(2, local), force(2, local), shear(local), tension(local), moment(local), &
            opening(local)

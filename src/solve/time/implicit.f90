@@ -91,7 +91,7 @@ contains
       stepper%step%beta = 0.25_wp*(1.0_wp + stepper%step%alpha_f)**2
    end function new_hht
 
-   !> The same method with finite rotations.
+   !> The same method, with its parameters, for a column with finite rotations.
    type(finite_stepper) function with_finite_rotations(method) result(stepper)
       type(implicit_stepper), intent(in) :: method
 
@@ -99,6 +99,7 @@ contains
       stepper%by = method%step%family_type
    end function with_finite_rotations
 
+   !> Make room, and find velocities, accelerations and forces at the start of the first step.
    subroutine prepare(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -111,7 +112,8 @@ contains
                 self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
 
-   !> Take a step; a column of one body has a way of its own, which may fail.
+   !> Take a step; a column of one body has a procedure of its own, and where that finds no end the step is
+   !> taken as for any structure.
    subroutine take_step(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -139,6 +141,7 @@ contains
          call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
                              load(lateral), load(horizontal), self%converged)
          if (.not. self%converged) return
+         ! Lateral force and acceleration of the ground are the first two loads.
          mean = 0.5_wp*(state%load(:2) + load(:2))
          if (motion%acts(lateral)) then
             state%of_loads = state%of_loads + mean(lateral)*(body%moved(1) + body%upper*body%moved(2))
@@ -147,7 +150,8 @@ contains
             state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
          end if
          if (motion%damped) state%of_damping = state%of_damping + body%work_of_damping(step%v0)
-         ! Both elements one by one: the compiler does not know that there are no more.
+         ! The slip has the velocity of the bottom of the body. Both elements one by one: the compiler does
+         ! not know that there are no more.
          state%v(1) = body%v1(1) - body%lower*body%v1(2)
          state%v(2) = body%v1(2)
          state%q(1) = body%q(1)
@@ -165,7 +169,8 @@ contains
       end associate
    end subroutine take_step_of_one_body
 
-   !> Find the end of the step. If it is not found, the springs are as before.
+   !> Find the end of the step, by Newton's method or along a snap of members. If it is not found, the springs
+   !> are as before.
    subroutine solve_step(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -175,8 +180,10 @@ contains
       self%ambiguous = .false.
       call state%motion%set_axial_loads(state%springs, self%load)
       call find_end(self, state)
+      ! Springs without stiffness shared a motion: of many states in equilibrium the nearest is sought.
       if (self%converged .and. self%ambiguous) call settle(self, state)
       if (self%converged) call self%check_runaway(state)
+      ! Without a mark no spring has left its line: there is nothing to take back.
       if (.not. self%marked) return
       if (size(self%step%now%tangent) > 0) then
          call snap_unless_smooth(self, state)
@@ -186,7 +193,8 @@ contains
       call state%springs%forget_mark()
    end subroutine solve_step
 
-   !> Find a state in equilibrium.
+   !> Find a state in equilibrium, by Newton's method and, where it fails, from end to end of the springs'
+   !> lines.
    subroutine find_end(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -227,7 +235,10 @@ contains
    subroutine go_by_events(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Share of the correction up to an end; residual at the trial before, `huge` after an end; least
+      !> residual
       real(wp) :: share, before, least
+      !> Spring that is at the end of its line, and which end: +1 or -1
       integer :: i, direction
 
       before = huge(1.0_wp)
@@ -268,9 +279,9 @@ contains
    !> The share of a correction up to the first end of a line that a spring reaches.
    pure subroutine first_end(springs, q, dq, share, first, direction)
       type(spring_array), intent(in) :: springs
-      !> Deformations reached and their correction (unknowns)
+      !> Deformations reached and their correction (coordinates)
       real(wp), intent(in), contiguous :: q(:), dq(:)
-      !> Share from 0 to 1; the spring, 0 if there is none; its direction
+      !> Share from 0 to 1; the spring that ends it, 0 if there is none; its direction, +1 or -1
       real(wp), intent(out) :: share
       integer, intent(out) :: first, direction
       real(wp) :: clearance
@@ -301,6 +312,7 @@ contains
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
 
+      ! Where members may snap the works are known already.
       if (.not. self%weighed) then
          call self%find_works(state)
          call state%springs%carry_to(self%step%q1)
@@ -314,7 +326,7 @@ contains
       call self%step%go_on(state)
    end subroutine commit
 
-   !> The trial at the start of the step.
+   !> The first trial, in which nothing moves from the start of the step, and its residual.
    subroutine try_start(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -328,13 +340,14 @@ contains
    !> Springs resist a deformation from an anchor, by a share of their initial stiffness.
    subroutine resist(self, share)
       class(implicit_stepper), intent(inout) :: self
+      !> Share of the initial stiffness; 0: no resistance
       real(wp), intent(in) :: share
 
       self%step%resistance = share
       self%step%now%resistance = share
    end subroutine resist
 
-   !> A step in which a member slides or turns away is none.
+   !> A step in which a member slides or turns away without bounds is no step: it has not converged.
    subroutine check_runaway(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -343,11 +356,12 @@ contains
       self%converged = self%runaway == 0
    end subroutine check_runaway
 
-   !> Works of the step by the trapezoidal rule along the way, which balances exactly for average
-   !> acceleration on straight lines; velocities of the springs at its end.
+   !> Find the works of loads and damping in the step by the trapezoidal rule along the way, which balances
+   !> exactly for average acceleration on straight lines; velocities of the springs at its end.
    subroutine find_works(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
+      !> Power of vertical loads at start and end [W]
       real(wp) :: before, after
       integer :: i
 
@@ -380,11 +394,12 @@ contains
       end associate
    end subroutine find_works
 
-   !> Column, method and length of the step of one body.
+   !> Give the record of a step of one body its column, its method and the length of the step.
    pure subroutine fit_one_body(body, step, motion, h)
       type(one_body_step), intent(inout) :: body
       type(step_balance), intent(in) :: step
       type(equation_of_motion), intent(in) :: motion
+      !> Step [s]
       real(wp), intent(in) :: h
 
       body%alpha_m = step%alpha_m
@@ -401,6 +416,7 @@ contains
       call body%set_step(h)
    end subroutine fit_one_body
 
+   !> Find the correction that takes the residual away as long as no line changes.
    subroutine correct(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -408,9 +424,11 @@ contains
       call self%tangent%find_correction(self%step, state, self%h, self%dx)
       self%ambiguous = self%ambiguous .or. self%step%shares .or. self%tangent%holds
       call state%motion%structure%spring_rates(self%step%now%tangent, self%dx, self%dq)
+      ! Springs between the unknowns are corrected by themselves.
       if (size(self%step%now%correction) > 0) self%dq = self%dq + self%step%now%correction
    end subroutine correct
 
+   !> Go on (or back) by a share of the correction, and find the residual there; `huge` out of bounds.
    subroutine try(self, state, share)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -424,12 +442,14 @@ contains
       if (in_range) call self%step%find_residual(state, self%h, self%load, self%residual)
    end subroutine try
 
+   !> Work of the residual on the correction [J].
    real(wp) function work_of_residual(self) result(work)
       class(implicit_stepper), intent(in) :: self
 
       work = inner_product(size(self%step%r), self%step%r, self%dx)
    end function work_of_residual
 
+   !> Whether the residual is the round-off of the terms of the step.
    logical function is_round_off(self, state)
       class(implicit_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
@@ -437,7 +457,8 @@ contains
       is_round_off = self%step%is_round_off(state, self%h, self%tangent%stiffness)
    end function is_round_off
 
-   !> Vertical loads alone: their work is not that of a force which keeps its direction.
+   !> The vertical loads alone, without lateral force and ground motions along x and y: the work of a vertical
+   !> load is not that of a force which keeps its direction, and is found by its power.
    pure function lifts(load)
       real(wp), intent(in) :: load(signals)
       real(wp) :: lifts(signals)

@@ -157,8 +157,10 @@ contains
    !> belongs to its opening and its rotation, whose moment is in the place of the second layer.
    subroutine set_stiffness(structure, unit, stiff)
       class(structure_type), intent(in) :: structure
-      !> (springs)
+      !> (springs): factors that bring forces and moments to one unit; in the place of the second layer of a
+      !> joint the factor of a moment is put
       real(wp), intent(inout) :: unit(:)
+      !> (coordinates)
       real(wp), allocatable, intent(out) :: stiff(:)
       integer :: i, j
 
@@ -186,6 +188,7 @@ contains
       call swap(self%a0, self%a1)
       call swap(self%g0, self%g1)
       self%known = .true.
+      ! Damping by the present stiffness changes with the lines: forces and accelerations at the start follow.
       if (size(self%damping_tangent) == 0 .or. state%springs%version == self%damping_version) return
       associate (structure => state%motion%structure, force => self%g1)
          force = 0.0_wp
@@ -208,7 +211,8 @@ contains
       self%damping_version = state%springs%version
    end subroutine set_damping
 
-   !> Save or restore the motion of the bodies at the start of a step.
+   !> Save or restore, whichever the stream is set to, the motion of the bodies at the start of a step and the
+   !> scales of its residual.
    subroutine serialize(self, stream)
       class(step_balance), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -219,7 +223,8 @@ contains
       call stream%item(self%largest)
    end subroutine serialize
 
-   !> Tangents of the elements on the present lines, which condense the parts between the unknowns.
+   !> Find the tangents of the elements on the present lines, which condense the parts between the unknowns;
+   !> not where lines and resistance are those of the last tangents.
    subroutine fit_elements(self, state)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -236,11 +241,14 @@ contains
       self%resistance_in = self%resistance
    end subroutine fit_elements
 
-   !> Residual of the step for displacements of the unknowns, and its size relative to the forces.
+   !> Find the residual of the step for the displacements of the unknowns in `moved`, and its size relative to
+   !> the forces.
    subroutine find_residual(self, state, h, load, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
+      !> Step [s], loads at its end
       real(wp), intent(in) :: h, load(signals)
+      !> Size of the residual relative to the forces
       real(wp), intent(out) :: relative
 
       self%load = load
@@ -254,14 +262,17 @@ contains
       call compare(self, state, relative)
    end subroutine find_residual
 
-   !> The residual of the trial that nothing has moved. It has the forces of the end of the last step, but for
-   !> the response to loads and velocities alone.
+   !> Find the residual of the first trial, in which nothing has moved. It has the forces of the end of the
+   !> last step, but for the response to loads and velocities alone.
    subroutine find_first(self, state, h, load, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
+      !> Step [s], loads at its end
       real(wp), intent(in) :: h, load(signals)
+      !> Size of the residual relative to the forces
       real(wp), intent(out) :: relative
 
+      ! The forces of the last end may not be at hand; and only those of elements are worth the saving.
       if (.not. self%known .or. size(self%now%tangent) == 0) then
          call self%find_residual(state, h, load, relative)
          return
@@ -279,7 +290,7 @@ contains
       call compare(self, state, relative)
    end subroutine find_first
 
-   !> Residual of the balance in the trial, relative to the forces.
+   !> Find the residual of the balance in the trial, and its size relative to the forces (`relative`).
    subroutine compare(self, state, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -296,14 +307,17 @@ contains
       end associate
    end subroutine compare
 
-   !> Forces on the unknowns, inertia of the ground and damping included.
+   !> Find the forces on the unknowns, inertia of the ground and damping included.
    subroutine find_forces(state, q, w, v, load, damping_tangent, now, g)
       type(state_type), intent(in) :: state
       !> Deformations of the springs and their velocities (springs), velocities of the unknowns
       real(wp), intent(in), contiguous :: q(:), w(:), v(:)
+      !> Loads at the time
       real(wp), intent(in) :: load(signals)
+      !> Tangents that elements are damped by, if their damping follows the present stiffness
       type(series_tangent), intent(in) :: damping_tangent(:)
       type(motion_result), intent(inout) :: now
+      !> Forces on the unknowns (unknowns)
       real(wp), intent(out), contiguous :: g(:)
 
       associate (motion => state%motion, structure => state%motion%structure)
@@ -319,6 +333,7 @@ contains
    !> Accelerations and velocities at the end of the step for displacements of the unknowns.
    pure subroutine end_of_step(self, h)
       class(step_balance), intent(inout) :: self
+      !> Step [s]
       real(wp), intent(in) :: h
 
       associate (v0 => self%v0, a0 => self%a0, beta => self%beta, gamma => self%gamma)
@@ -327,8 +342,11 @@ contains
       end associate
    end subroutine end_of_step
 
+   !> Residual of the equation of the step.
    pure subroutine balance(m, alpha_m, alpha_f, mass, a0, a1, g0, g1, r)
       integer, intent(in) :: m
+      !> Shares of the start of the step in inertia and forces; mass; accelerations and forces at start and
+      !> end
       real(wp), intent(in) :: alpha_m, alpha_f, mass(m), a0(m), a1(m), g0(m), g1(m)
       real(wp), intent(out) :: r(m)
 
@@ -345,7 +363,9 @@ contains
       !> Accelerations (unknowns), loads
       real(wp), intent(in), contiguous :: a(:)
       real(wp), intent(in) :: load(signals)
+      !> Largest residual over the largest force of its group
       real(wp), intent(out) :: relative
+      !> Largest residual of a group
       real(wp) :: rest
       integer :: j
 
@@ -364,11 +384,13 @@ contains
       end do
    end subroutine measure
 
-   !> Largest force and largest residual of a group of unknowns.
+   !> Largest force and largest residual of a group of unknowns, which are all forces or all moments.
    pure subroutine measure_group(group, unknowns, springs, inertias, a, f, r, scale, rest)
       type(unknown_group), intent(in) :: group
       integer, intent(in) :: unknowns, springs
+      !> Mass or inertia, accelerations, forces of the springs, residual
       real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs), r(unknowns)
+      !> Largest force (of springs and inertia) and largest residual
       real(wp), intent(out) :: scale, rest
       integer :: i, k
 
@@ -385,10 +407,13 @@ contains
       end do
    end subroutine measure_group
 
-   !> As `measure_group`, for the unknowns of one group of forces and moments.
+   !> Largest force of inertia and largest residual of the unknowns of one group that has forces and moments,
+   !> which their factors bring to one unit.
    pure subroutine measure_all(unknowns, unit_factor, inertias, a, r, scale, rest)
       integer, intent(in) :: unknowns
+      !> Factors to one unit; mass or inertia, accelerations, residual
       real(wp), intent(in) :: unit_factor(unknowns), inertias(unknowns), a(unknowns), r(unknowns)
+      !> Largest force, and largest residual
       real(wp), intent(out) :: scale, rest
       integer :: i
 
@@ -400,14 +425,16 @@ contains
       end do
    end subroutine measure_all
 
-   !> The largest product of two numbers of given numbers, in size. Where no spring is a layer, all are.
+   !> The largest product of two numbers, in size, over chosen places of two lists.
    pure real(wp) function largest(chosen, a, b)
+      !> Places that count, ascending
       integer, intent(in), contiguous :: chosen(:)
       real(wp), intent(in), contiguous :: a(:), b(:)
       integer :: i
 
       largest = 0.0_wp
       if (size(chosen) == 0) return
+      ! Where no spring is a layer all places count, one after the other.
       if (chosen(size(chosen)) == size(chosen)) then
          !$omp simd reduction(max:largest)
          do i = 1, size(chosen)
@@ -425,9 +452,12 @@ contains
    logical function is_round_off(self, state, h, stiffness)
       class(step_balance), intent(in) :: self
       type(state_type), intent(in) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
       !> Diagonal of the tangent (unknowns)
       real(wp), intent(in), contiguous :: stiffness(:)
+      !> Of each part of the structure: sum of the roots of its diagonal, times the largest motion of the
+      !> group; that motion; largest force of members, and the same if no terms cancelled
       real(wp) :: reach(maxval(state%motion%structure%part)), distance, force, terms, work
       real(wp), dimension(size(stiffness)) :: unit_factor, moved
       integer :: i, j, k
@@ -463,12 +493,14 @@ contains
       end associate
    end function is_round_off
 
+   !> Make room for a structure.
    subroutine create(self, structure)
       class(step_tangent), intent(out) :: self
       class(structure_type), intent(in) :: structure
 
       allocate (self%stiffness(structure%unknowns), self%k(size(structure%location)), source=0.0_wp)
       call self%matrix%create(structure%unknowns, structure%half_width)
+      ! Unknowns without mass may lose all stiffness: their initial one tells.
       if (all(structure%inertias > 0.0_wp)) return
       call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%matrix%band)
       self%initial = merge(0.0_wp, self%matrix%band(1, :), structure%inertias > 0.0_wp)
@@ -480,8 +512,9 @@ contains
       class(step_tangent), intent(inout) :: self
       type(step_balance), intent(inout) :: step
       type(state_type), intent(in) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
-      !> Of the unknowns (unknowns)
+      !> Correction of the unknowns (unknowns)
       real(wp), intent(out), contiguous :: dx(:)
       logical :: regular
 
@@ -533,6 +566,7 @@ contains
       class(step_tangent), intent(inout) :: self
       type(step_balance), intent(inout) :: step
       type(state_type), intent(in) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
 
       if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= equal_step*h .and. &
@@ -556,6 +590,7 @@ contains
 
       !> What `apply_modal_damping` needs of the elastic structure without damping.
       subroutine prepare_modal_damping(massed, momenta)
+         !> Unknowns with mass; momenta of the modes (unknowns with mass, modes)
          integer, intent(in) :: massed(:)
          real(wp), intent(in) :: momenta(:, :)
          real(wp) :: motion(size(step%r))
@@ -577,6 +612,7 @@ contains
 
       !> Tangent of the step on lines of the springs, and its factor.
       subroutine set_tangent(k, tangent)
+         !> Stiffness of the springs (springs); tangents of elements on the same lines
          real(wp), intent(in) :: k(:)
          type(series_tangent), intent(in) :: tangent(:)
          real(wp) :: of_mass, of_damping
@@ -611,7 +647,8 @@ contains
          end associate
       end subroutine set_tangent
 
-      !> Where the pivot of an unknown without mass is round-off, it stays where it is.
+      !> Where the pivot of an unknown without mass is round-off, a share of the initial stiffness holds the
+      !> unknown, and the tangent is factored again.
       subroutine hold_free()
 
          associate (inverse => abs(self%matrix%triangle(1, :)), initial => self%initial)

@@ -76,7 +76,7 @@ module rbs_solve_time_implicit_finite
 
 contains
 
-   !> Velocities and accelerations of the bodies at the start of the first step.
+   !> Make room, and find velocities, accelerations and forces of the bodies at the start of the first step.
    subroutine prepare(self, state)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -126,13 +126,14 @@ contains
       end associate
       self%v1 = self%v0
       call locate_bodies(self, state%q)
+      ! The length of a step, here any, counts for the derivatives alone.
       call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
       self%a0(:, 1:) = self%g0(:, 1:)/self%mass
       self%largest = self%scale
    end subroutine prepare
 
-   !> In a step the work of the springs is counted from its start: as the small difference of large numbers
-   !> it would have no digits.
+   !> Take the step, if Newton's method converges; else the state is as before. In the step the work of the
+   !> springs is counted from its start: as the small difference of large numbers it would have no digits.
    subroutine take_step(self, state)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -164,9 +165,10 @@ contains
       if (self%marked) call state%springs%forget_mark()
    end subroutine take_step
 
-   !> The bodies and joints at one state.
+   !> Find directions of the bodies and gaps of the joints at one state.
    subroutine locate_bodies(self, q)
       type(finite_stepper), intent(inout) :: self
+      !> Deformations of the joints (springs)
       real(wp), intent(in), contiguous :: q(:)
       integer :: i
 
@@ -182,7 +184,7 @@ contains
       end do
    end subroutine locate_bodies
 
-   !> Values of a joint, of slip, rotation and opening, from those of all springs.
+   !> Values of joint i (slip, rotation, opening), from those of all springs.
    pure function joint_values(self, x, i, opening) result(y)
       type(finite_stepper), intent(in) :: self
       !> (springs)
@@ -196,11 +198,13 @@ contains
       if (self%column%opens) y(tension) = x(self%column%at(tension, i))
    end function joint_values
 
-   !> Put values of a joint among those of all springs.
+   !> Put values of joint i (slip, rotation, opening) among those of all springs; an opening only where joints
+   !> have a spring for it.
    pure subroutine put_joint(self, y, i, x)
       type(finite_stepper), intent(in) :: self
       real(wp), intent(in) :: y(3)
       integer, intent(in) :: i
+      !> (springs)
       real(wp), intent(inout), contiguous :: x(:)
 
       x(self%column%at(shear, i)) = y(shear)
@@ -208,7 +212,7 @@ contains
       if (self%column%opens) x(self%column%at(tension, i)) = y(tension)
    end subroutine put_joint
 
-   !> Go a share of the correction, and find the residual there.
+   !> Go on (or back) by a share of the correction, and find the residual there; `huge` out of bounds.
    subroutine try(self, state, share)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -303,8 +307,10 @@ contains
 
    end subroutine try
 
+   !> Velocities and accelerations at the end of a step of average acceleration, from the displacements in it.
    pure subroutine end_of_step(m, h, moved, v0, v1, a1)
       integer, intent(in) :: m
+      !> Step [s]; displacements in it, and velocities at its start
       real(wp), intent(in) :: h, moved(m), v0(m)
       real(wp), intent(out) :: v1(m), a1(m)
 
@@ -312,15 +318,17 @@ contains
       a1 = (2.0_wp/h**2)*(moved - h*v0)
    end subroutine end_of_step
 
+   !> Residual of the balance of a step of average acceleration.
    pure subroutine balance(m, damping, mass, moved, a1, g1, r)
       integer, intent(in) :: m
+      !> Mass damping over the step [1/s2]; mass, displacements in the step, accelerations, other forces
       real(wp), intent(in) :: damping, mass(m), moved(m), a1(m), g1(m)
       real(wp), intent(out) :: r(m)
 
       r = g1 - mass*(a1 + damping*moved)
    end subroutine balance
 
-   !> Bodies and joints at the end of the step, and the velocities of the joints.
+   !> Find bodies and joints at the end of the step, and the velocities of the joints.
    subroutine locate_end(self)
       type(finite_stepper), intent(inout) :: self
       integer :: i
@@ -334,13 +342,15 @@ contains
       end do
    end subroutine locate_end
 
-   !> Forces on the bodies at one state.
+   !> Find the forces on the bodies at one state: of loads, springs and damping.
    subroutine find_forces_at(self, state, q, v, load, h, g)
       type(finite_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
+      !> Deformations and their velocities (springs)
       real(wp), intent(in), contiguous :: q(:), v(:)
-      !> Loads, and length of the step
+      !> Loads, and length of the step [s]
       real(wp), intent(in) :: load(signals), h
+      !> Along x and y [N] and about the centroids [N m] (3, 0:n)
       real(wp), intent(out) :: g(:, 0:)
 
       self%viscous(:) = state%motion%viscous(state%springs%k, state%motion%joint_damping)
@@ -353,11 +363,14 @@ contains
       end if
    end subroutine find_forces_at
 
-   !> Forces of loads and joints on the bodies, as these are seen.
+   !> Find the forces of loads and joints on the bodies, in the directions of `seen`: at one state, or in the
+   !> mean of a step.
    subroutine find_balance(self, load, g)
       type(finite_stepper), intent(inout) :: self
       real(wp), intent(in) :: load(signals)
+      !> Along x and y [N] and about the centroids [N m] (3, 0:n)
       real(wp), intent(out) :: g(:, 0:)
+      !> Forces of a joint; largest force and largest moment of all
       real(wp) :: f(3), reach(2)
       integer :: i, n
 
@@ -390,6 +403,7 @@ contains
       real(wp), intent(in) :: load(signals)
       !> Whether loads that have a potential count too
       logical, intent(in) :: constant
+      !> Forces on the bodies, which are added to (3, 0:n)
       real(wp), intent(inout) :: g(:, 0:)
       !> Derivative of the moment on the top body by its rotation
       real(wp), intent(out) :: rate
@@ -404,8 +418,8 @@ contains
       end associate
    end subroutine add_loads
 
-   !> The correction that takes the residual away as far as the step is linear. The three displacements of a
-   !> body end at `last`; before them is the axial force of its joint, if that does not open.
+   !> Find the correction that takes the residual away as far as the step is linear. The three displacements
+   !> of a body end at `last`; before them is the axial force of its joint, if that does not open.
    subroutine correct(self, state)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -448,11 +462,11 @@ contains
       if (self%regular) self%regular = maxval(abs(self%dx(3, :))) < most_rotation
    end subroutine correct
 
-   !> Add the share of a joint in the tangent.
+   !> Add the part of joint i to the tangent of the step.
    subroutine add_joint_tangent(self, i, share, per_force)
       type(finite_stepper), intent(inout) :: self
       integer, intent(in) :: i
-      !> Of the forces at the end of the step in the residual; unit of the axial forces
+      !> Share of the forces at the end of the step in the residual; unit of the axial forces
       real(wp), intent(in) :: share, per_force
       real(wp) :: tangent(local, local)
       integer :: at(local), j, l
@@ -482,6 +496,7 @@ contains
       end associate
    end subroutine add_joint_tangent
 
+   !> Work of the residual on the correction [J].
    real(wp) function work_of_residual(self) result(work)
       class(finite_stepper), intent(in) :: self
 
@@ -493,15 +508,17 @@ contains
       class(finite_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
 
+      ! This is never true, but uses the arguments that the interface prescribes.
       is_round_off = self%acceptable < 0.0_wp .and. state%diverged
    end function is_round_off
 
-   !> The end of the step becomes the state, the springs excepted.
+   !> The end of the step becomes the state, the springs excepted; works of loads and damping in it are added.
    subroutine finish_step(self, state)
       type(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
 
       self%g0 = 0.0_wp
+      ! Loads without a potential, in the mean of the step, do work on its displacements.
       call add_loads(self, self%turned(self%column%n), 0.5_wp*(state%load + self%load), .false., self%g0, &
                      self%load_rate)
       state%of_loads = state%of_loads + sum(self%g0*self%moved)
@@ -516,6 +533,7 @@ contains
       call locate_end(self)
       state%q(:) = self%q1
       state%v(:) = self%w1
+      ! Kinetic energy that the velocities of the joints do not show
       state%along_joints = 0.5_wp*sum(self%mass*self%v1(:, 1:)**2) &
                            - self%column%kinetic_energy(state%q, state%v)
       state%time = state%time + self%h
@@ -526,7 +544,8 @@ contains
       self%g0 = self%g1
    end subroutine finish_step
 
-   !> Save or restore the motion of the bodies at the start of a step.
+   !> Save or restore, whichever the stream is set to, the motion of the bodies at the start of a step, the
+   !> axial forces of joints that do not open, and the scales of the residual.
    subroutine serialize(self, stream)
       class(finite_stepper), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

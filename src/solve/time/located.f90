@@ -43,10 +43,16 @@ contains
    subroutine advance(self, state, h, error)
       class(located_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
+      !> The state is then the last good one
       type(error_type), allocatable, intent(inout) :: error
+      !> The first event of the attempt; its spring is 0 for none
       type(event_type) :: event
+      !> End of the step, time left of it, length of the part to be tried, time to the next corner of the
+      !> loading; error over the tolerance; lengths that are round-off of the step and of the clock [s]
       real(wp) :: finish, left, part, corner, excess, no_length, clock_digits
+      !> `idle`: parts in a row without length
       integer :: tries, idle, i
 
       if (allocated(error)) return
@@ -119,7 +125,8 @@ contains
 
    contains
 
-      !> Take the attempt; the springs follow, that of the event onto its next line.
+      !> Take the attempt of length h [s] as the state; the springs follow, that of the event onto its next
+      !> line.
       subroutine accept(h)
          real(wp), intent(in) :: h
          integer :: i
@@ -152,7 +159,8 @@ contains
          end if
       end subroutine accept
 
-      !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
+      !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite. Without
+      !> a tolerance it is 0.
       real(wp) function error_of() result(excess)
          real(wp) :: measure
 
@@ -162,6 +170,7 @@ contains
          if (.not. all(ieee_is_finite(self%scheme%v))) return
          if (.not. all(ieee_is_finite(self%scheme%q))) return
          excess = 0.0_wp
+         ! Out of bounds the run ends, which `accept` finds.
          if (.not. in_bounds(size(self%scheme%q), self%scheme%q)) return
          measure = max(self%largest, energy_of(self%scheme%q, self%scheme%v))
          if (measure > 0.0_wp) then
@@ -194,9 +203,12 @@ contains
          end do
       end subroutine locate
 
-      !> Newton's method for the time of one event.
+      !> Newton's method, within bounds that are drawn closer, for the time of the event; the attempt ends
+      !> there.
       subroutine approach(h)
+         !> On entry the length of the attempt, on return that up to the event [s]
          real(wp), intent(inout) :: h
+         !> Bounds of the time of the event, and a trial [s]; distance beyond the event there
          real(wp) :: low, high, t, distance, rate, round_off
          integer :: iteration
 
@@ -223,7 +235,8 @@ contains
 
    end subroutine advance
 
-   !> With a tolerance the length of the next step and the measure of its error depend on the steps before.
+   !> Save or restore, whichever the stream is set to, what the next step depends on: with a tolerance its
+   !> length and the measure of its error, which follow from the steps before.
    subroutine resume(self, state, stream)
       class(located_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -241,8 +254,9 @@ contains
       most_idle = 20 + 10*state%springs%count
    end function most_idle
 
-   !> Springs that pass an end of their line, or have turned back already, change their line
-   !> before the step.
+   !> Before a step, change the lines of springs that would leave their lines at once: they move, or are about
+   !> to move, beyond an end, or back on a one-way line. One spring at a time, since each change gives other
+   !> accelerations.
    subroutine leave_at_once(self, state, part, error)
       class(located_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -296,7 +310,7 @@ contains
 
    end subroutine leave_at_once
 
-   !> Report a spring that changes its lines in a circle.
+   !> Report that spring i changes its lines in a circle.
    subroutine report_standstill(state, i, error)
       type(state_type), intent(in) :: state
       integer, intent(in) :: i

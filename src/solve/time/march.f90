@@ -24,7 +24,8 @@ module rbs_solve_time_march
 
 contains
 
-   !> March through the plan.
+   !> March through the plan: from the state at the start step by step, with rows, peaks and energies, to the
+   !> end of the run.
    subroutine march(structure, planned, stepper, time, loads, initial, task, error, monitor)
       class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: planned
@@ -73,14 +74,18 @@ contains
 
    contains
 
-      !> The steps of the plan, up to the end of the run.
+      !> Take the steps of the plan, up to the end of the run, and keep rows. A run ends early by an error, a
+      !> collapse, a fall or a stop.
       subroutine take_steps()
          type(motion_result) :: now
          real(wp) :: begin, finish, h
+         !> Interval of the plan; step in it, and number of these; next step with a row; joint that has lost
+         !> its axial load, 0 for none
          integer :: interval, part, parts, next_row, crushed_joint
          logical :: ends
 
          call now%create(state%motion%structure)
+         ! Number of the step after which the next row is kept; without `every` rows are those of intervals.
          next_row = huge(1)
          if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
          step = 0
@@ -148,6 +153,7 @@ contains
 
       !> A member has failed inside, where nothing has mass: the run ends in the last state that it has.
       subroutine end_with_fall(now)
+         !> Work arrays
          type(motion_result), intent(inout) :: now
 
          task%summary%remark = 'at time '//to_text(state%begin + state%time)//' s '// &
@@ -174,10 +180,12 @@ contains
 
       !> Record the last good state before a failure.
       subroutine keep_last(now)
+         !> Work arrays
          type(motion_result), intent(inout) :: now
          type(error_type), allocatable :: ignored
 
          state%clock = state%begin + state%time
+         ! A row of this time may be there already.
          if (state%diverged .or. .not. state%clock > response%time) return
          call state%update_monitor(state%clock)
          call balance(state, response%energy, task%summary)
@@ -187,6 +195,7 @@ contains
       !> Keep the present state, whose energies are in the response.
       subroutine keep(error, now)
          type(error_type), allocatable, intent(inout) :: error
+         !> Work arrays
          type(motion_result), intent(inout) :: now
 
          response%time = state%clock
@@ -213,7 +222,7 @@ contains
 
    end subroutine march
 
-   !> End of an interval between kept times, and the number of its steps.
+   !> End of an interval between kept times [s], and the number of its steps.
    pure subroutine interval_of(plan, time, interval, finish, parts)
       type(time_plan), intent(in) :: plan
       !> Times of the loading (m) [s]
@@ -232,7 +241,7 @@ contains
       end if
    end subroutine interval_of
 
-   !> Where, when and how often members snapped.
+   !> Report to the summary where, when and how often members snapped.
    subroutine report_snaps(state, summary)
       type(state_type), intent(in) :: state
       type(summary_type), intent(inout) :: summary
@@ -250,17 +259,20 @@ contains
                        ' moved farthest'//before
    end subroutine report_snaps
 
-   !> Times that are multiples of one step differ by it up to round-off; the steps are then equal to the last
-   !> bit, and the constants of a method for a step hold for all of them.
+   !> The step of the plan in place of a step that differs from it by round-off, as where times are multiples
+   !> of one step: the steps are then equal to the last bit, and the constants of a method for a step hold for
+   !> all of them.
    pure real(wp) function step_of(plan, h)
       type(time_plan), intent(in) :: plan
+      !> Step [s]
       real(wp), intent(in) :: h
 
       step_of = h
       if (abs(h - plan%dt) <= same_step*plan%dt) step_of = plan%dt
    end function step_of
 
-   !> Report why the run cannot be continued.
+   !> Report why the run cannot be continued: a deformation is out of bounds, or a rule of a spring goes in a
+   !> circle.
    subroutine report_state(state, error)
       type(state_type), intent(in) :: state
       type(error_type), allocatable, intent(inout) :: error
@@ -278,11 +290,11 @@ contains
       end if
    end subroutine report_state
 
-   !> The energies of the present state.
+   !> The energies of the present state, and the residual of their balance.
    subroutine balance(state, energy, summary)
       type(state_type), intent(in) :: state
       type(energy_type), intent(out) :: energy
-      !> That takes them into account
+      !> The summary that keeps the largest of them
       type(summary_type), intent(inout), optional :: summary
 
       energy%input = state%of_loads

@@ -58,7 +58,7 @@ module rbs_solve_time_monitor
 
 contains
 
-   !> Limit states to watch for; to be called before `begin`.
+   !> Set the limit states to watch for; to be called before `begin`.
    pure subroutine watch_for(self, watch, states)
       class(response_monitor), intent(inout) :: self
       type(watch_type), intent(in) :: watch(:)
@@ -70,12 +70,13 @@ contains
       self%top = spread(0.0_wp, 1, states)
    end subroutine watch_for
 
-   !> The start of a run.
+   !> Begin to monitor a run: find the springs of the watches, forget the peaks before, and look at the state
+   !> at the start.
    subroutine begin(self, motion, springs, q, v, load, clock, collapse_drift, floor)
       class(response_monitor), intent(inout) :: self
-      !> See `update`
       type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
+      !> At the start: deformations and velocities (springs), loads, time of the clock [s]
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(signals), clock
       !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
@@ -130,8 +131,8 @@ contains
       call self%update(motion, springs, q, v, load, clock)
    end subroutine begin
 
-   !> The spring with a number in a list. A kind that the structure does not have has the factor 0, with any
-   !> spring.
+   !> The spring in a place of a list; any spring where the list is shorter, since a kind of spring that the
+   !> structure does not have has the factor 0 in a watch.
    pure integer function numbered(springs, number) result(spring)
       integer, intent(in) :: springs(:), number
 
@@ -139,7 +140,8 @@ contains
       if (number <= size(springs)) spring = springs(number)
    end function numbered
 
-   !> The end of a step.
+   !> Look at the state at the end of a step: displacement, base shear, drifts, and the limit states that are
+   !> still watched for.
    subroutine update(self, motion, springs, q, v, load, clock)
       class(response_monitor), intent(inout) :: self
       type(equation_of_motion), intent(in) :: motion
@@ -147,19 +149,20 @@ contains
       !> Deformations and velocities (springs), loads
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(signals)
-      !> [s]
+      !> Time of the clock [s]
       real(wp), intent(in) :: clock
       real(wp) :: displacement, rotation, shear
       integer :: i
 
       if (associated(motion%one_body)) then
-         ! Its steps are short: nothing is called that need not be.
+         ! A column of one body: its steps are short, nothing is called that need not be.
          displacement = q(1) + motion%one_body%length(1)*q(2)
          rotation = abs(q(2))
       else
          displacement = motion%structure%top_displacement(q)
          rotation = motion%structure%largest_rotation(q)
       end if
+      ! A frame has no one spring whose force is the base shear, and no spring has it alone with damping.
       i = motion%base_spring
       if (i > 0) then
          shear = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
@@ -183,6 +186,7 @@ contains
             abs(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal)))
       end if
       if (.not. self%watching) return
+      ! One body between its bounds, which is the most frequent case.
       if (size(q) == 2 .and. .not. self%opens) then
          if (q(1) < self%highest(1) .and. q(1) > self%lowest(1) .and. &
              q(2) < self%highest(2) .and. q(2) > self%lowest(2)) then
@@ -196,12 +200,14 @@ contains
       call self%check_limits(springs, q, displacement, clock)
    end subroutine update
 
-   !> Limit states at the end of a step; between its ends deformations are straight in time.
+   !> Check the limit states at the end of a step, in which deformations are taken as linear in time since the
+   !> last check.
    subroutine check_limits(self, springs, q, displacement, clock)
       class(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      !> Deformations (springs)
       real(wp), intent(in), contiguous :: q(:)
-      !> Of the top [m]
+      !> Displacement of the top [m], time of the clock [s]
       real(wp), intent(in) :: displacement, clock
 
       if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q, q, q, 0.0_wp)) then
@@ -213,15 +219,18 @@ contains
       if (self%opens) call update_openings(self, springs, q)
    end subroutine check_limits
 
-   !> Limit states that may have been reached.
+   !> Look whether limit states have been reached since the last check, and when, by linear interpolation
+   !> between both states.
    subroutine check_limit_states(self, springs, q, displacement, clock)
       type(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      !> Deformations (springs), displacement of the top [m], time of the clock [s]
       real(wp), intent(in) :: q(:), displacement, clock
       real(wp) :: share, before, after, at
       logical :: open(size(self%reached))
       integer :: i
 
+      ! Open before the step: several watches may reach one limit state in it, and the first counts.
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
          if (.not. open(self%watch(i)%state)) cycle
@@ -239,8 +248,8 @@ contains
       call set_bounds(self)
    end subroutine check_limit_states
 
-   !> A step from a state that has been checked, with springs on their lines; between its ends deformations
-   !> are cubics in time.
+   !> Look at the response within a step, from a state that has been checked, with springs on their lines;
+   !> between its ends deformations are cubics in time.
    subroutine update_within_step(self, motion, springs, q0, v0, q1, v1, h, clock)
       class(response_monitor), intent(inout) :: self
       type(equation_of_motion), intent(in) :: motion
@@ -281,11 +290,12 @@ contains
       if (self%watching) call check_within(self, springs, q0, v0, q1, v1, top, h, clock)
    end subroutine update_within_step
 
-   !> Limit states within a step.
+   !> Look whether limit states have been reached within a step, and when.
    subroutine check_within(self, springs, q0, v0, q1, v1, top, h, clock)
       type(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
-      !> See `update_within_step`; displacement of the top as a cubic
+      !> Deformations and velocities at the start and the end of the step (springs); displacement of the top
+      !> as a cubic; length of the step, and time of the clock at its end [s]
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       real(wp), intent(in) :: top(4), h, clock
       real(wp) :: value(4), share
@@ -298,6 +308,7 @@ contains
       if (.not. self%opens) then
          if (.not. are_beyond(size(q0), self%lowest, self%highest, q0, v0, q1, v1, h*beyond_ends)) return
       end if
+      ! Open before the step: several watches may reach one limit state in it, and the first counts.
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
          if (.not. open(self%watch(i)%state)) cycle
@@ -313,8 +324,10 @@ contains
 
    contains
 
-      !> Value of the watch, linear in the deformations, a time behind those that there are.
+      !> Value of the watch, as if the deformations went on at their velocities for a time: the value is
+      !> linear in them, so that differences are rates.
       pure real(wp) function value_at(q, v, later)
+         !> Deformations, velocities, and the time [s]
          real(wp), intent(in) :: q(:), v(:), later
 
          associate (watch => self%watch(i))
@@ -327,7 +340,7 @@ contains
 
    end subroutine check_within
 
-   !> Keep the shares of the openings in the limit states.
+   !> Keep the shares that openings of joints have in the limit states, for the next check.
    pure subroutine update_openings(self, springs, q)
       type(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
@@ -340,7 +353,7 @@ contains
       end do
    end subroutine update_openings
 
-   !> Share of the opening, and of the rotation at rest, in a limit state.
+   !> Share that the opening, and the rotation at rest, have in the value of a watch.
    pure real(wp) function opening_share(watch, springs, rotation) result(share)
       type(watch_type), intent(in) :: watch
       type(spring_array), intent(in) :: springs
@@ -352,9 +365,10 @@ contains
                                                + watch%rotation*rest_of(springs, watch%turns)
    end function opening_share
 
-   !> Whether some deformation may be at a bound within a step.
+   !> Whether some deformation may be at a bound within a step, by bounds of the cubics.
    pure logical function are_beyond(m, lowest, highest, q0, v0, q1, v1, reach)
       integer, intent(in) :: m
+      !> Bounds; deformations and velocities at the start and the end of the step
       real(wp), intent(in) :: lowest(m), highest(m), q0(m), v0(m), q1(m), v1(m)
       !> Excess of a cubic over its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
@@ -380,7 +394,7 @@ contains
       value = watch%slip*slip + watch%rotation*rotation + opening
    end function value_of
 
-   !> A limit state may be reached.
+   !> A limit state is reached by one of its watches: the earliest time counts.
    pure subroutine reach(self, i, at, top)
       type(response_monitor), intent(inout) :: self
       !> Place of the watch
@@ -393,7 +407,8 @@ contains
       self%top(self%watch(i)%state) = top
    end subroutine reach
 
-   !> Bounds of the limit states that are not reached yet.
+   !> Find the deformations between which no limit state is reached that is not yet reached, and whether some
+   !> have no such bounds: they depend on openings or on two deformations.
    pure subroutine set_bounds(self)
       type(response_monitor), intent(inout) :: self
       integer :: i
@@ -418,8 +433,9 @@ contains
       end do
    end subroutine set_bounds
 
-   !> The bound of a deformation that has a factor.
+   !> Narrow the bounds of a deformation to where its factor times it is below the threshold.
    pure subroutine narrow(lowest, highest, factor, threshold)
+      !> Bounds of the deformation [m or rad]
       real(wp), intent(inout) :: lowest, highest
       real(wp), intent(in) :: factor, threshold
 

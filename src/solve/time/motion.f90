@@ -47,7 +47,7 @@ module rbs_solve_time_motion
 
 contains
 
-   !> Set what the equation of motion of a structure has.
+   !> Set what belongs to the equation of motion of a structure under given loads.
    subroutine create(self, structure, acts, error)
       class(equation_of_motion), intent(out) :: self
       class(structure_type), intent(in), target :: structure
@@ -68,6 +68,7 @@ contains
       self%springs_damp = structure%spring_damping > 0.0_wp .or. allocated(self%modal)
       self%second_order = structure%kinematics == pdelta .and. (structure%axially_loaded .or. self%varies)
       self%plain = structure%kinematics /= finite .and. .not. (self%damped .or. self%varies)
+      ! The forms for one body know small rotations and constant axial forces alone.
       if (structure%kinematics == finite .or. self%varies) return
       self%one_body => column_of_one_body(structure)
       if (.not. associated(self%one_body)) return
@@ -95,6 +96,7 @@ contains
    subroutine forces_on_bodies(self, springs, q, v, load, result, g)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Position and velocity (coordinates)
       real(wp), intent(in) :: q(self%structure%coordinates), v(self%structure%coordinates)
       !> Loads at the time
       real(wp), intent(in) :: load(signals)
@@ -109,6 +111,7 @@ contains
       if (self%damped .or. self%second_order .or. springs%axial_load_varies) then
          call find_others(self, springs, v, load, result, m)
       end if
+      ! Springs resist a motion from an anchor where an implicit step asks for that.
       if (result%resistance > 0.0_wp) then
          allocate (more(springs%count))
          call springs%find_resistance(result%resistance*self%structure%initial_stiffness, q - result%anchor, &
@@ -118,11 +121,14 @@ contains
       call self%structure%forces(q, load, result%axial(:m), result%tangent, result%f, g, result%correction)
    end subroutine forces_on_bodies
 
-   !> Loads and damping besides the forces of the springs on their lines.
+   !> Add what acts besides the forces of the springs on their lines: forces of damping and of axial loads
+   !> that vary, to the forces of the springs; axial forces that do second-order work.
    subroutine find_others(self, springs, v, load, result, m)
       type(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Velocity (coordinates); loads at the time
       real(wp), intent(in) :: v(self%structure%coordinates), load(signals)
+      !> Gets the forces
       type(motion_result), intent(inout) :: result
       !> Number of axial forces that do second-order work
       integer, intent(inout) :: m
@@ -133,10 +139,11 @@ contains
       if (self%varies) call self%structure%axial_forces(load, result%axial)
    end subroutine find_others
 
-   !> Forces of the springs on their present lines, and of the damping beside them.
+   !> Forces of the springs on their present lines and of the damping beside them, for output.
    subroutine joint_forces(self, springs, q, v, load, f)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Position and velocity (coordinates)
       real(wp), intent(in), contiguous :: q(:), v(:)
       !> Loads at the time
       real(wp), intent(in) :: load(signals)
@@ -151,13 +158,16 @@ contains
    subroutine add_to_springs(self, springs, v, load, f)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Velocity (coordinates); loads at the time
       real(wp), intent(in) :: v(self%structure%coordinates), load(signals)
+      !> Forces of the springs, which are added to (springs) [N, N m]
       real(wp), intent(inout), contiguous :: f(:)
       integer :: i, j
 
       if (springs%axial_load_varies) then
          do j = 1, size(springs%layered)
             i = springs%layered(j)
+            ! On its plane M = m + k phi - e N the moment falls with the axial load by e, the `centre`.
             f(i) = f(i) - springs%centre(i)*(self%structure%axial_force(i, load) - &
               springs%reference_axial_load(i))
          end do
@@ -180,6 +190,7 @@ contains
    !> Forces of the modal damping.
    pure function modal_forces(m, modal, v) result(f)
       integer, intent(in) :: m
+      !> Matrix of the modal damping, and velocities of the springs
       real(wp), intent(in) :: modal(m, m), v(m)
       real(wp) :: f(m)
       integer :: j
@@ -190,7 +201,8 @@ contains
       end do
    end function modal_forces
 
-   !> Tell layered joints the axial forces that their next move leads to.
+   !> Tell layered joints the axial forces that their next move leads to; nothing where axial loads are
+   !> constant.
    subroutine set_axial_loads(self, springs, load)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(inout) :: springs
@@ -205,10 +217,11 @@ contains
       end do
    end subroutine set_axial_loads
 
-   !> Power of the damping [W].
+   !> Power of the damping of springs and bodies at a state [W].
    real(wp) function damping_power(self, springs, q, v) result(watt)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Position and velocity (coordinates)
       real(wp), intent(in), contiguous :: q(:), v(:)
 
       watt = 0.0_wp
@@ -218,6 +231,7 @@ contains
          if (allocated(self%modal)) then
             watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
          end if
+         ! In proportion to the mass: twice the kinetic energy
          if (structure%mass_damping > 0.0_wp) then
             watt = watt + 2.0_wp*structure%mass_damping*structure%kinetic_energy(q, v)
          end if
@@ -229,6 +243,7 @@ contains
    real(wp) function base_shear(self, springs, q, v) result(force)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Position and velocity (coordinates)
       real(wp), intent(in) :: q(self%structure%coordinates), v(self%structure%coordinates)
       real(wp) :: c(3)
       integer :: i

@@ -47,7 +47,7 @@ module rbs_solve_time_newton
       integer, private :: failed = 0
    contains
       procedure :: advance, resume, iterate, has_converged, move_springs
-      !> Once, before the first step
+      !> Find velocities, accelerations and forces at the start, once before the first step
       procedure(act_on_state), deferred :: prepare
       !> Take the step, if it converges; else the state is as before
       procedure(act_on_state), deferred :: take_step
@@ -60,6 +60,7 @@ module rbs_solve_time_newton
    end type newton_stepper
 
    abstract interface
+      !> Any act of the method on a state.
       subroutine act_on_state(self, state)
          import :: newton_stepper, state_type
          class(newton_stepper), intent(inout) :: self
@@ -71,6 +72,7 @@ module rbs_solve_time_newton
          import :: newton_stepper, state_type, wp
          class(newton_stepper), intent(inout) :: self
          type(state_type), intent(inout) :: state
+         !> May be negative, to go back
          real(wp), intent(in) :: share
       end subroutine try_interface
 
@@ -97,10 +99,12 @@ module rbs_solve_time_newton
 
 contains
 
-   !> Go on by h; a step that does not converge is cut.
+   !> Move the state on by h; a step that does not converge is cut into halves, and these in turn. The state
+   !> may end before with `runaway`, where a member has lost its equilibrium.
    subroutine advance(self, state, h, error)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: finish
@@ -122,21 +126,24 @@ contains
       if (.not. allocated(error) .and. state%runaway == 0) state%time = finish
    end subroutine advance
 
-   !> Accelerations and forces at the start of a step are those that the step before ended with.
+   !> Save or restore, whichever the stream is set to, what the next step depends on besides the state:
+   !> accelerations and forces at its start are those that the step before ended with.
    subroutine resume(self, state, stream)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
+      ! A new method needs its arrays before they are restored.
       if (.not. self%begun) call self%prepare(state)
       self%begun = .true.
       call self%serialize(stream)
    end subroutine resume
 
-   !> Take the halves of a step that has not converged.
+   !> Take the halves of a step that has not converged; each that does not converge either is cut again.
    recursive subroutine halve(self, state, h, cuts, error)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Length of the step that failed [s]
       real(wp), intent(in) :: h
       !> How often the step has been cut before
       integer, intent(in) :: cuts
@@ -185,10 +192,13 @@ contains
       end if
    end function remedy
 
-   !> Iterate from a trial whose residual has been found.
+   !> Newton's method from a trial whose residual has been found, until the residual has vanished
+   !> (`converged`), no correction exists, or the residual decreases no more.
    subroutine iterate(self, state)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Residual of the trial before; work of the residual on a correction at its start and at its end; share
+      !> of the first by which the second may be negative; least residual so far
       real(wp) :: before, slope_before, slope, too_far, least
       integer :: iteration, idle
 
@@ -218,11 +228,12 @@ contains
       end do
    end subroutine iterate
 
-   !> Whether the residual has vanished, or is as small as round-off lets it be.
+   !> Whether the residual has vanished, or is as small as round-off lets it be: it is acceptable and no more
+   !> than halves from trial to trial, or it hardly decreases and is the round-off of the terms of the step.
    logical function has_converged(self, state, before)
       class(newton_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
-      !> Relative size at the last trial
+      !> Size of the residual relative to the forces at the trial before
       real(wp), intent(in) :: before
 
       has_converged = self%residual <= self%wanted
@@ -242,6 +253,7 @@ contains
       !> left
       real(wp), intent(in) :: slope_before, slope_at_end, share_left
       type(false_position) :: line
+      !> Share of the correction to be tried, work of the residual there, share reached
       real(wp) :: share, slope, now
       integer :: trial
 
@@ -258,16 +270,18 @@ contains
       end do
    end subroutine search_line
 
-   !> Move the springs from the start of the step to a trial, if their lines do not reach so far.
+   !> Move the springs from the start of the step to a trial, each in one direction. As long as all stay on
+   !> their lines nothing need be moved.
    subroutine move_springs(self, state, q, in_range)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      !> Position (coordinates)
+      !> Position (coordinates); deformations of layers in it are set by those of their joints
       real(wp), intent(inout), contiguous :: q(:)
       !> Whether the deformations are within bounds
       logical, intent(out) :: in_range
 
       in_range = .true.
+      ! Without a mark no spring has left its line in this step.
       if (.not. self%marked) then
          if (state%springs%stay_on_lines(q)) return
       end if

@@ -42,6 +42,7 @@ module rbs_solve_time_pair45
 
 contains
 
+   !> Make room for a structure.
    subroutine create(self, structure)
       class(pair45_scheme), intent(out) :: self
       class(structure_type), intent(in) :: structure
@@ -59,10 +60,13 @@ contains
    subroutine attempt(self, state, h)
       class(pair45_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
       real(wp) :: load(signals), of_loads, of_damping
       integer :: stage
 
+      ! The first stage is the last one of the step before, unless that was not taken or something has
+      ! changed.
       if (.not. self%begun) then
          call reach_stage(self, state, 1, h, state%load)
          call find_powers(self, state, state%load, self%load_power, self%damping_power)
@@ -88,6 +92,7 @@ contains
    subroutine find_powers(self, state, load, of_loads, of_damping)
       class(pair45_scheme), intent(in) :: self
       type(state_type), intent(in) :: state
+      !> Loads at the time of the stage
       real(wp), intent(in) :: load(signals)
       real(wp), intent(out) :: of_loads, of_damping
 
@@ -97,11 +102,13 @@ contains
       if (state%motion%damped) of_damping = state%motion%damping_power(state%springs, self%q, self%v)
    end subroutine find_powers
 
-   !> Deformations, velocities and accelerations of a stage.
+   !> Find deformations, velocities and accelerations of a stage from the rates of the stages before it.
    subroutine reach_stage(self, state, stage, h, load)
       class(pair45_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> From 1, the start of the step, to 7, its end
       integer, intent(in) :: stage
+      !> Step [s], and loads at the time of the stage
       real(wp), intent(in) :: h, load(signals)
 
       call add_rates(size(self%q), stage - 1, h*row(:, stage), state%q, self%rate_q, self%q)
@@ -111,9 +118,11 @@ contains
       self%rate_v(:, stage) = self%now%a
    end subroutine reach_stage
 
-   !> Go from x0 at the rates of some stages.
+   !> Go from x0 at the rates of the first n stages.
    pure subroutine add_rates(m, n, share, x0, rate, x)
+      !> Numbers of values, and of stages
       integer, intent(in) :: m, n
+      !> Coefficients of the stages times the step [s]; start, and rates of the stages
       real(wp), intent(in) :: share(stages - 1), x0(m), rate(m, stages)
       real(wp), intent(out) :: x(m)
       real(wp) :: sum

@@ -46,7 +46,7 @@ module rbs_solve_time_plan
 
 contains
 
-   !> Times must be finite and ascend.
+   !> Times of a loading must be finite, and ascend by more than nothing.
    subroutine check_times(time, error)
       !> Times of the loading (m) [s]
       real(wp), intent(in) :: time(:)
@@ -88,8 +88,7 @@ contains
       type(time_plan), intent(inout) :: plan
       !> Times of the loading, checked (m) [s]; step given by the user, or `unset` [s]
       real(wp), intent(in) :: time(:), dt
-      !> Longest step where the user gives none [s]; steps that the user gives must not be longer; `huge` for
-      !> none [s]
+      !> Longest step where the user gives none [s]; limit of a step that the user gives, `huge` for none [s]
       real(wp), intent(in) :: longest, limit
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: parts(:)
@@ -109,6 +108,7 @@ contains
          parts = max(anint(parts), 1.0_wp)
       else
          step = longest
+         ! Rounded up, but not by round-off
          parts = max(aint((time(2:) - time(:m - 1))/step*(1.0_wp - same_input)) + 1.0_wp, 1.0_wp)
       end if
       steps = sum(parts)
@@ -129,7 +129,7 @@ contains
       end if
    end subroutine new_plan
 
-   !> Refuse more steps than can be taken.
+   !> Refuse more steps than can be taken in a sensible time.
    subroutine check_length(steps, step, error)
       !> Number of steps, and their length [s]
       real(wp), intent(in) :: steps, step
@@ -142,10 +142,11 @@ contains
       end if
    end subroutine check_length
 
-   !> The steps continue those of another analysis, if they are the same but for round-off.
+   !> Let the steps continue those of another analysis: the length of the step to the last bit, if both differ
+   !> by round-off, and where steps are counted from, if the other one ended where this plan begins.
    pure subroutine go_on_from(self, dt, origin, offset)
       class(time_plan), intent(inout) :: self
-      !> Step of the other one, where it counted from, and how many it has taken
+      !> Step of the other analysis [s], time from which it counted its steps [s], and how many it has taken
       real(wp), intent(in) :: dt, origin
       integer, intent(in) :: offset
 
@@ -169,8 +170,9 @@ contains
       end if
    end function rows
 
-   !> Refuse a step beyond the stability limit.
+   !> Refuse a step of the user that is not a positive number, or is beyond the limit of stability.
    subroutine check_step(dt, limit, error)
+      !> Step, and longest one that is stable; `huge` where there is no limit [s]
       real(wp), intent(in) :: dt, limit
       type(error_type), allocatable, intent(out) :: error
 

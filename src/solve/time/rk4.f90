@@ -59,6 +59,7 @@ contains
       type(state_type), intent(inout) :: state
       !> Step [s]
       real(wp), intent(in) :: h
+      !> Loads at start, middle and end of the step
       real(wp) :: load(signals, 3), push(3), ground(3)
 
       load(:, 1) = state%load
@@ -77,13 +78,16 @@ contains
       end if
    end subroutine attempt
 
-   !> The step for any number of bodies.
+   !> Find the step for any number of bodies: deformations, velocities and works at its end.
    subroutine step_of_chain(self, state, h, load)
       class(rk4_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
-      !> Loads at start, middle and end
+      !> Loads at start, middle and end of the step
       real(wp), intent(in) :: load(signals, 3)
+      !> Velocity of the top, and momentum with its sign turned, at the start and at the stage: times lateral
+      !> force and acceleration of the ground they are power
       real(wp) :: start(2), speed(2)
       integer :: stage, i, m
 
@@ -125,6 +129,7 @@ contains
       end associate
    end subroutine step_of_chain
 
+   !> The first stage is the start of the step, and the result begins there.
    pure subroutine begin_step(m, q0, v0, stage_q, stage_v, q, v)
       integer, intent(in) :: m
       real(wp), intent(in) :: q0(m), v0(m)
@@ -141,7 +146,9 @@ contains
       integer, intent(in) :: m
       !> Weight and place of the stage times the step [s]
       real(wp), intent(in) :: share, reach
+      !> Deformations and velocities at the start of the step; accelerations of the stage
       real(wp), intent(in) :: q0(m), v0(m), a(m)
+      !> The stage, which becomes the next one; the result so far
       real(wp), intent(inout) :: stage_q(m), stage_v(m), q(m), v(m)
       integer :: i
 
@@ -153,20 +160,26 @@ contains
       end do
    end subroutine next_stage
 
+   !> Add the last stage to the result.
    pure subroutine end_step(m, share, a, stage_v, q, v)
       integer, intent(in) :: m
+      !> Weight of the stage times the step [s]; its accelerations and velocities
       real(wp), intent(in) :: share, a(m), stage_v(m)
+      !> The result
       real(wp), intent(inout) :: q(m), v(m)
 
       q = q + share*stage_v
       v = v + share*a
    end subroutine end_step
 
-   !> The same for the paper's column, whose loops and calls would take nearly all of the time.
+   !> One step of a column of one body, and its springs at the end: loops and calls as for any number of
+   !> bodies would take nearly all of the time.
    subroutine advance_one_body(body, state, h)
       type(rk4_body), intent(inout) :: body
       type(state_type), intent(inout) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
+      !> Lateral force and acceleration of the ground at start, middle and end of the step
       real(wp) :: force(3), ground(3), of_loads, of_damping
 
       force = 0.0_wp
@@ -196,7 +209,9 @@ contains
    subroutine advance(self, state, h, error)
       class(rk4_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Step [s]
       real(wp), intent(in) :: h
+      !> Not set here: a state out of bounds is marked as diverged
       type(error_type), allocatable, intent(inout) :: error
 
       if (allocated(error)) return

@@ -35,7 +35,8 @@ module rbs_solve_time_run_dynamic
 
 contains
 
-   !> Choice of the method, stability limit and plan of the steps of a dynamic analysis.
+   !> Choose the method of a dynamic analysis, find its limit of stability, and plan its steps. Settings,
+   !> structure and loads that do not go together give an error.
    subroutine plan_dynamic(structure, analysis, time, loads, plan, error)
       class(structure_type), intent(in) :: structure
       !> Validated settings
@@ -46,6 +47,7 @@ contains
       type(time_plan), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
 
+      !> Whether joints have layers under an axial load that varies, so that their rule is a plane over it
       logical :: on_planes
 
       call check_times(time, error)
@@ -71,7 +73,8 @@ contains
 
    contains
 
-      !> Unknowns without mass follow from an implicit step alone.
+      !> A structure with unknowns without mass needs an implicit step, from which alone their motion follows:
+      !> choose one, or refuse an explicit one that the user has chosen.
       subroutine choose_implicit()
          type(method_type) :: method
 
@@ -88,9 +91,11 @@ contains
                           'and a frame has unknowns without mass; choose newmark, hht or generalised_alpha')
       end subroutine choose_implicit
 
-      !> Steps of the method chosen.
+      !> Plan the steps of the method chosen, and check that the loads act on the structure.
       subroutine plan_steps()
          type(method_type) :: method
+         !> Lowest circular frequency [rad/s]; longest step where the user gives none, and the longest that
+         !> the user may give [s]
          real(wp) :: lowest, longest, bound
 
          method = method_named(plan%method)
@@ -128,6 +133,8 @@ contains
       !> any time, else the cheapest. It is chosen by counts of steps, never by a clock.
       subroutine choose_method()
          type(method_type) :: explicit_choice, implicit_choice, chosen
+         !> Lowest circular frequency [rad/s]; steps of both methods; longest implicit step [s]; cost of such
+         !> a step in explicit ones; explicit steps times bodies
          real(wp) :: lowest, explicit_steps, implicit_steps, longest, step_cost, work
          logical :: affordable
 
@@ -170,7 +177,7 @@ contains
 
    end subroutine plan_dynamic
 
-   !> The longest natural period [s]; a long time where there is no restoring force.
+   !> The longest natural period [s]; a very long time where there is no restoring force.
    pure real(wp) function longest_period(lowest)
       !> Lowest circular frequency [rad/s]
       real(wp), intent(in) :: lowest
@@ -178,12 +185,13 @@ contains
       longest_period = 2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
    end function longest_period
 
-   !> Response in time under lateral force, ground motion, axial load, or all of them.
+   !> Response in time under lateral force, ground motion, axial load, or all of them: check loads and initial
+   !> values, make the method, march.
    subroutine run_dynamic(structure, analysis, plan, time, loads, initial, task, error, monitor)
       class(structure_type), intent(in) :: structure
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
-      !> From `plan_dynamic`
+      !> Plan of the steps that `plan_dynamic` has made for these settings and loads
       type(time_plan), intent(in) :: plan
       !> Times of the loading (m) [s]
       real(wp), intent(in) :: time(:)
@@ -220,7 +228,7 @@ contains
       call march(structure, plan, stepper, time, loads, initial, task, error, monitor)
    end subroutine run_dynamic
 
-   !> The method of a plan, ready for its first step.
+   !> Make the method of a plan, ready for its first step.
    subroutine new_stepper(stepper, structure, analysis, plan)
       class(stepper_type), allocatable, intent(out) :: stepper
       class(structure_type), intent(in) :: structure
@@ -265,12 +273,14 @@ contains
             call move_alloc(fixed, stepper)
          end if
       end select
+      ! A number for the method, 100 more with located events: a state is continued by the same one alone.
       stepper%method = findloc(methods%name == plan%method, .true., dim=1)
       if (analysis%events == 'located' .or. plan%located) stepper%method = stepper%method + 100
       if (is_given(analysis%rho_infinity)) stepper%setting = analysis%rho_infinity
    end subroutine new_stepper
 
-   !> An implicit method for the kinematics of a column.
+   !> Make a stepper of an implicit method, for exact rotations if the kinematics of the structure is
+   !> `finite`.
    subroutine set_implicit(stepper, method, structure)
       class(stepper_type), allocatable, intent(out) :: stepper
       type(implicit_stepper), intent(in) :: method

@@ -48,8 +48,8 @@ module rbs_solve_time_scheme
 
 contains
 
-   !> Take the last attempt, of length h, as the state; its springs do not follow yet. The state before takes
-   !> its place.
+   !> Take the last attempt, of length h [s], as the state; its springs do not follow yet. The scheme keeps
+   !> the state before in place of the result.
    subroutine accept(self, state, h)
       class(scheme_type), intent(inout) :: self
       type(state_type), intent(inout) :: state

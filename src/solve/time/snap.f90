@@ -18,7 +18,8 @@ submodule (rbs_solve_time_implicit) rbs_solve_time_snap
 
 contains
 
-   !> Snap, unless the step has converged and has lost next to no energy.
+   !> Judge a step by the energy that it loses. If it has not converged, or loses more than a small share,
+   !> take it to the state that members snap to, if there is one: else it has not converged.
    module subroutine snap_unless_smooth(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -46,6 +47,9 @@ contains
    subroutine snap(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Resistance as a share of the initial stiffness; settings kept for the return; residual at the last
+      !> try without resistance; way of a round, measured by energy, and of the round before with its
+      !> resistance
       real(wp) :: resistance, wanted, tried, distance, distance_before, at_last
       integer :: round, trials, waits
 
@@ -102,11 +106,12 @@ contains
       self%most_trials = trials
    end subroutine snap
 
-   !> A state in which the tangent is not definite is an equilibrium too. Its tangent for the next steps is
-   !> that with resistance.
+   !> Whether the trial is a state at rest: in equilibrium without resistance, though its tangent is not
+   !> definite. The tangent for the next steps is that with resistance.
    subroutine rest(self, state, resistance)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Share of the initial stiffness
       real(wp), intent(in) :: resistance
 
       call self%resist(resistance)
@@ -131,6 +136,7 @@ contains
    subroutine find_loss(self, state, loss, energy)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
+      !> Energy [J]; that of the motion and the springs is the scale of the loss
       real(wp), intent(out) :: loss, energy
       real(wp) :: kinetic, potential
 
@@ -148,10 +154,12 @@ contains
       end associate
    end subroutine find_loss
 
-   !> A member has snapped: the energy that the jump sets free is lost.
+   !> Count a step in which a member has snapped; the energy that the jump sets free is lost. The largest loss
+   !> is kept with its time and spring.
    subroutine count_snap(self, state, loss)
       class(implicit_stepper), intent(in) :: self
       type(state_type), intent(inout) :: state
+      !> Energy lost in the step [J]
       real(wp), intent(in) :: loss
 
       state%in_snaps = state%in_snaps + loss

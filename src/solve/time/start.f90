@@ -27,13 +27,16 @@ module rbs_solve_time_start
 
 contains
 
-   !> The state that another analysis ended in. At the time of its end the clock continues.
+   !> Begin in the state that another analysis ended in. If this one begins at the time at which that ended,
+   !> the clock continues.
    subroutine resume_state(state, structure, loads, before, plan, checkpoint, error)
       type(state_type), intent(out) :: state
       class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       type(end_state), intent(inout) :: before
+      !> Its steps continue those of the other analysis, if they are the same
       type(time_plan), intent(inout) :: plan
+      !> Numbers of the state that are not part of `state`
       type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: axial_force(size(structure%location)), residual, largest(signals)
@@ -65,7 +68,7 @@ contains
       state%of_damping = checkpoint%damping
       state%at_begin = checkpoint%at_begin
       state%along_joints = checkpoint%along_joints
-      ! Missing part of the balance of energy
+      ! The balance of energy keeps the residual that it had.
       residual = checkpoint%residual - (state%of_loads + state%at_begin &
                                      - (structure%kinetic_energy(state%q, state%v) + state%along_joints) &
                                      - sum(state%springs%work) - state%of_damping &
@@ -73,10 +76,12 @@ contains
       if (abs(residual) > 0.0_wp) state%at_begin = state%at_begin + residual
    end subroutine resume_state
 
-   !> The same method continues with its memory, unless a load jumps at the start.
+   !> Let the method continue with its memory, if it is the same with the same setting, unless a load jumps at
+   !> the start.
    subroutine resume_steps(state, stepper, before, checkpoint)
       type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
+      !> The state, read up to the memory of the method
       type(end_state), intent(inout) :: before
       type(checkpoint_type), intent(in) :: checkpoint
 
@@ -86,13 +91,14 @@ contains
       call stepper%resume(state, before%stream)
    end subroutine resume_steps
 
-   !> Keep the state at the end.
+   !> Keep the state at the end of a run, from which another analysis can begin.
    subroutine keep_state(state, stepper, plan, steps, residual, after)
       type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
       type(time_plan), intent(in) :: plan
       !> Steps taken, as planned
       integer, intent(in) :: steps
+      !> Residual of the balance of energy [J]
       real(wp), intent(in) :: residual
       type(end_state), intent(inout) :: after
       type(checkpoint_type) :: checkpoint
@@ -129,12 +135,14 @@ contains
       call after%finish_saving()
    end subroutine keep_state
 
-   !> The state at the start of an analysis.
+   !> The state at the start of an analysis: at rest, or with the deformations and velocities that the user
+   !> gives.
    subroutine start_state(state, structure, loads, initial, begin, error)
       type(state_type), intent(out) :: state
       class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
+      !> Time of the clock at the start [s]
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
 
@@ -149,7 +157,8 @@ contains
                        + state%motion%structure%potential_energy(state%q)
    end subroutine start_state
 
-   !> The same structure at rest once more, under ground motions that have taken the place of others.
+   !> Put the same structure at rest once more, under ground motions that have taken the place of others in
+   !> the state.
    subroutine restart_state(state)
       type(state_type), intent(inout) :: state
 
@@ -169,6 +178,7 @@ contains
       type(state_type), intent(out) :: state
       class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
+      !> Time of the clock at the start [s]
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: axial_force(size(structure%location))
@@ -192,7 +202,7 @@ contains
       allocate (state%q(structure%coordinates), state%v(structure%coordinates), source=0.0_wp)
    end subroutine create_state
 
-   !> Loads by the time since the start of the run, and those of the moment.
+   !> Let the loads be taken by the time since the start of the run, and find those of the moment.
    subroutine prepare_loads(state, structure)
       type(state_type), intent(inout) :: state
       class(structure_type), intent(in) :: structure
@@ -206,7 +216,7 @@ contains
       call state%loads%at_time(state%time, state%load)
    end subroutine prepare_loads
 
-   !> Openings of axial springs in equilibrium with axial load and weight.
+   !> Find the openings at which axial springs are in equilibrium with axial load and weight.
    subroutine close_joints(state, error)
       type(state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
@@ -215,6 +225,7 @@ contains
       logical :: found
 
       load = state%load
+      ! Not with the vertical acceleration of the ground
       load(vertical) = 0.0_wp
       do i = 1, state%springs%count
          if (state%motion%structure%location(i)%kind /= axial) cycle

@@ -73,7 +73,7 @@ module rbs_solve_time_state
 
 contains
 
-   !> Monitor the state for the first time; the limit states are known.
+   !> Let the monitor look at the state for the first time; the limit states are known to it before.
    subroutine begin_monitor(self, collapse_drift, floor)
       class(state_type), intent(inout) :: self
       !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
@@ -85,16 +85,16 @@ contains
                             collapse_drift, floor)
    end subroutine begin_monitor
 
-   !> Look at the state, at the end of a step or of a part of one.
+   !> Let the monitor look at the state at the end of a step, or of a part of a step.
    subroutine update_monitor(self, clock)
       class(state_type), intent(inout) :: self
-      !> [s]
+      !> Time of the clock [s]
       real(wp), intent(in) :: clock
 
       call self%monitor%update(self%motion, self%springs, self%q, self%v, self%load, clock)
    end subroutine update_monitor
 
-   !> Ready for another run of the same structure with the same steps.
+   !> Make the method ready for another run of the same structure with the same steps.
    subroutine restart(self)
       class(stepper_type), intent(inout) :: self
 
@@ -111,6 +111,7 @@ contains
       type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
+      ! Nothing to save; a state out of bounds is no start.
       stream%broken = stream%broken .or. self%steps < 0 .or. state%diverged
    end subroutine resume
 
