@@ -7,10 +7,12 @@ module rbs_app_command_line
 
    public :: command_type, read_command_line
 
+   !> Words that a misspelt one is compared with
    character(len=9), parameter :: commands(4) = ['run  ', 'check', 'modes', 'keys ']
    character(len=10), parameter :: options(8) = ['--output  ', '--quiet   ', '--json    ', '--count   ', &
               '--matrices', '--as      ', '--help    ', '--version ']
 
+   !> What the user asks for.
    type :: command_type
       !> run, check, modes, keys, help or version
       character(len=:), allocatable :: name
@@ -22,6 +24,7 @@ module rbs_app_command_line
       character(len=:), allocatable :: shown
       !> Path of the output; not allocated: the path that the case gives
       character(len=:), allocatable :: output
+      !> run and check: no summary, no notes and no progress
       logical :: quiet = .false.
       !> keys: as JSON, else as a table; check: as JSON, else in words
       logical :: as_json = .false.
@@ -32,7 +35,7 @@ module rbs_app_command_line
 
 contains
 
-   !> Read the arguments of the process.
+   !> Read the arguments of the process, and refuse what does not belong together.
    subroutine read_command_line(command, error)
       type(command_type), intent(out) :: command
       type(error_type), allocatable, intent(out) :: error
@@ -63,6 +66,7 @@ contains
          character(len=:), allocatable :: value
          integer :: mark, status
 
+         ! '--count=3' has its value behind the sign, '--count 3' in the next argument.
          mark = index(word//'=', '=')
          select case (word(:mark - 1))
          case ('-h', '--help')
@@ -77,6 +81,7 @@ contains
          case ('--matrices')
             command%matrices = .true.
          case ('--count', '-o', '--output', '--as')
+            ! With the sign at the end of the word there is no value.
             if (mark < len(word)) then
                value = word(mark + 1:)
             else if (mark > len(word) .and. i < command_argument_count()) then
@@ -168,6 +173,7 @@ contains
          end if
       end subroutine check_whole
 
+      !> Refuse the command line.
       subroutine complain(what)
          character(len=*), intent(in) :: what
 
@@ -184,6 +190,7 @@ contains
       if (allocated(command%name)) help_for = command%name == 'help' .and. .not. allocated(command%topic)
    end function help_for
 
+   !> Argument i of the process, with its blanks.
    function argument(i) result(word)
       integer, intent(in) :: i
       character(len=:), allocatable :: word

@@ -47,12 +47,13 @@ module rbs_app_commands
 
 contains
 
-   !> rbsdem run: solve a case and write its rows.
+   !> rbsdem run: solve a case, write its rows to a csv and print its summary.
    subroutine run_case(path, shown, output, quiet, error)
-      !> Path of the case, and what it is called by where that is standard input
+      !> Path of the case, and the path that messages call it by where the case comes from standard input
       character(len=*), intent(in) :: path, shown
       !> Path of the csv; not allocated: the path that the case gives, or the case's name with .csv
       character(len=:), allocatable, intent(in) :: output
+      !> Whether there is no summary, no note and no progress
       logical, intent(in) :: quiet
       type(error_type), allocatable, intent(out) :: error
       type(run_type), target :: run
@@ -61,11 +62,13 @@ contains
       character(len=:), allocatable :: file, kept_name
 
       call prepare(run, path, error)
+      ! The name that the user knows, for the paths of files beside the case
       run%path = shown
       if (.not. allocated(error)) call output_path(file)
       if (.not. allocated(error)) call check_output()
       if (allocated(error)) return
       call solve()
+      ! From here on a signal finds no unfinished file.
       call keep_if_stopped('', '')
       call run%recorder%file%close(.not. allocated(error), run%recorder%count > 0, closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
@@ -91,13 +94,14 @@ contains
 
    contains
 
-      !> Solve the case and write its rows to a csv.
+      !> Solve the case and write its rows to a csv, and its last state to a file if the case asks for one.
       subroutine solve()
          type(terminal_progress), target :: progress
          type(time_plan) :: plan
          type(initial_state) :: at_rest
          character(len=:), allocatable :: note
 
+         ! A static path is not planned; its method is as given.
          plan%method = run%case%analysis%method
          associate (case => run%case, structure => run%structure, history => run%history, &
                     recorder => run%recorder, task => run%task)
@@ -150,12 +154,12 @@ contains
          end associate
       end subroutine solve
 
-      !> Neither rows nor state may replace a file that the case was read from, nor the rows a file of others
-      !> whose name nobody gave.
+      !> Refuse files of output that would do harm: neither rows nor state may replace a file that the case
+      !> was read from, nor rows a file of others whose name nobody gave.
       subroutine check_output()
          character(len=:), allocatable :: state
 
-         ! A failed run keeps its rows in the second one.
+         ! A failed run keeps its rows in the file with the ending `partial`.
          if (is_input(file) .or. is_input(file//partial)) then
             call fatal_error(error, bad_input, 'output: '//file//' is an input of the case and would '// &
                              'be written over; choose another file with --output')
@@ -172,7 +176,7 @@ contains
          end if
       end subroutine check_output
 
-      !> Whether a path is the case itself or a history of it.
+      !> Whether a path is that of the case itself, or of a history of it.
       logical function is_input(path)
          character(len=*), intent(in) :: path
          integer :: i
@@ -198,6 +202,7 @@ contains
                              ' has no name for its rows; give one with --output')
          else
             dot = index(run%path, '.', back=.true.)
+            ! A dot at the begin of the name is no ending.
             if (dot <= index(run%path, '/', back=.true.) + 1) dot = len(run%path) + 1
             path = run%path(:dot - 1)//'.csv'
          end if
@@ -217,6 +222,7 @@ contains
          call say('  '//name//'  '//method_text(run%task%summary%method, run%task%summary%reason), error)
          do i = 1, size(figures)
             associate (figure => figures(i))
+               ! Figures of a lost joint are in the report of the end.
                if (figure%name == 'lost_joint') exit
                ! A static path has no steps in time, and an implicit method no stability limit.
                if (figure%unit == 's' .and. .not. figure%value > 0.0_wp) cycle
@@ -235,8 +241,8 @@ contains
 
    end subroutine run_case
 
-   !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial
-   !> load; the run itself has not failed.
+   !> Set the error of a run that ended at the user's criterion of collapse, or where a joint lost its axial
+   !> load; the run itself has not failed, but the exit code says how it ended.
    subroutine report_end(run, error)
       type(run_type), intent(in) :: run
       type(error_type), allocatable, intent(inout) :: error
@@ -274,8 +280,9 @@ contains
 
    !> rbsdem check: report all errors of the input without solving the case.
    subroutine check_case(path, shown, quiet, as_json, error)
-      !> Path of the case, and what it is called by where that is standard input
+      !> Path of the case, and the path that messages call it by where the case comes from standard input
       character(len=*), intent(in) :: path, shown
+      !> Whether only errors are printed, and whether all is printed as JSON
       logical, intent(in) :: quiet, as_json
       type(error_type), allocatable, intent(out) :: error
       type(run_type) :: run
@@ -310,7 +317,7 @@ contains
 
    contains
 
-      !> {"case": ..., "errors": [{"line": ..., "message": ...}], "method": ..., "notes": [...]}
+      !> Print {"case": ..., "errors": [{"line": ..., "message": ...}], "method": ..., "notes": [...]}.
       subroutine print_json()
          type(error_type), allocatable :: printing
 
@@ -322,14 +329,15 @@ contains
          if (notes%count > 0) call append_lines(notes%text, .false.)
          call buffer%append(']}')
          call say(buffer%text(:buffer%length), printing)
-         ! It has been printed; the code of the process stays.
+         ! The message has been printed; the exit code stays.
          if (allocated(error)) error%message = ''
          if (allocated(printing)) call move_alloc(printing, error)
       end subroutine print_json
 
-      !> The lines of a text; those of errors with the line of the file that they name, else null.
+      !> Append the lines of a text to the JSON; errors with the line of the file that they name, or null.
       subroutine append_lines(message, numbered)
          character(len=*), intent(in) :: message
+         !> Whether the lines are errors
          logical, intent(in) :: numbered
          character(len=:), allocatable :: number
          integer :: first, last, at, digits
@@ -353,7 +361,7 @@ contains
 
    end subroutine check_case
 
-   !> rbsdem keys: the keys of a case.
+   !> rbsdem keys: print the keys of a case.
    subroutine show_keys(name, as_json, error)
       !> A group or a rule; empty for all of them
       character(len=*), intent(in) :: name
@@ -370,9 +378,10 @@ contains
       call say(buffer%text(:buffer%length - 1), error)
    end subroutine show_keys
 
-   !> Read a case and its loadings; all errors in them are returned as one.
+   !> Read a case and its loadings, and make its structure; all errors in them are returned as one.
    subroutine prepare(run, path, error)
       type(run_type), intent(inout) :: run
+      !> Path of the case
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
 
@@ -381,7 +390,7 @@ contains
       if (.not. allocated(error)) call make_structure(run%case, run%structure, run%task%before, error)
    end subroutine prepare
 
-   !> A path from the folder of the case.
+   !> A path that is given from the folder of the case, as a path from the folder of the process.
    function from_case_folder(case_path, path) result(found)
       character(len=*), intent(in) :: case_path, path
       character(len=:), allocatable :: found
@@ -390,7 +399,7 @@ contains
       if (path(1:1) /= '/') found = case_path(:index(case_path, '/', back=.true.))//path
    end function from_case_folder
 
-   !> Comment lines of the csv.
+   !> Comment lines at the head of the csv.
    function header(case, method) result(lines)
       type(case_record), intent(in) :: case
       !> The method that is used, also where the program chooses it
@@ -410,7 +419,7 @@ contains
                  ', kinematics: '//kinematics
    end function header
 
-   !> A method, with the reason if the program chose it.
+   !> A method for print, with the reason if the program chose it.
    function method_text(method, reason) result(text)
       character(len=*), intent(in) :: method, reason
       character(len=:), allocatable :: text
@@ -432,7 +441,7 @@ contains
       end do
    end subroutine print_notes
 
-   !> A text in quotes, as JSON has it.
+   !> A text in quotes, with special characters as JSON has them.
    pure function json_text(text) result(quoted)
       character(len=*), intent(in) :: text
       character(len=:), allocatable :: quoted

@@ -13,7 +13,7 @@ program rbsdem
    implicit none
 
    interface
-      !> In C: end the process with a status and without printing anything.
+      !> In C: end the process with a status, and print nothing.
       subroutine c_exit(status) bind(c, name='exit')
          import :: c_int
          integer(c_int), value :: status
@@ -48,7 +48,7 @@ program rbsdem
       status = int(error%code, c_int)
    end if
    flush (error_unit)
-   ! Not `stop`, which reports floating-point flags.
+   ! The process does not end by `stop`, which reports floating-point flags.
    call c_exit(status)
 
 contains
@@ -64,7 +64,7 @@ contains
       end do
    end subroutine print_error
 
-   !> The help of a command, or of all.
+   !> Print the help of a command, or the overview and the help of run.
    subroutine print_help(topic, error)
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
@@ -110,8 +110,9 @@ contains
       call print_topic('run', error)
    end subroutine print_help
 
-   !> The help of one command.
+   !> Print the help of one command.
    subroutine print_topic(topic, error)
+      !> The command; keys, if it is none of the others
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
 

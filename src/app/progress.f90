@@ -13,16 +13,19 @@ module rbs_app_progress
 
    public :: terminal_progress, say
 
-   !> Runs shorter than this show no progress; it is also the least time between two updates [s].
+   !> Runs shorter than this show no progress; least time between two updates [s].
    real(wp), parameter :: quiet_time = 1.0_wp, pause = 0.2_wp
 
+   !> Signs of the bar
    integer, parameter :: bar_length = 30
 
    character(len=1), parameter :: carriage_return = achar(13)
 
    type, extends(observer_type) :: terminal_progress
+      !> Whether a line is on the terminal now; whether progress is to be shown
       logical :: shown = .false.
       logical, private :: wanted = .false.
+      !> Times of the clock at the begin and at the last update [s]
       real(wp), private :: begin = 0.0_wp, last = 0.0_wp
    contains
       procedure :: start, update, finish
@@ -38,12 +41,14 @@ module rbs_app_progress
 
 contains
 
-   !> Start the clock.
+   !> Start the clock; progress is shown unless it is not wanted or goes to no terminal.
    subroutine start(self, quiet)
       class(terminal_progress), intent(inout) :: self
+      !> Whether the user wants no progress
       logical, intent(in) :: quiet
 
       self%wanted = .false.
+      ! Descriptor 2 is the standard error.
       if (.not. quiet) self%wanted = c_isatty(2_c_int) == 1_c_int
       self%begin = seconds()
    end subroutine start
@@ -51,6 +56,7 @@ contains
    !> Show which share is done and how many seconds are left, some times a second.
    subroutine update(self, share)
       class(terminal_progress), intent(inout) :: self
+      !> From 0 to 1
       real(wp), intent(in) :: share
       real(wp) :: now
       integer :: filled
@@ -67,7 +73,7 @@ contains
       flush (error_unit)
    end subroutine update
 
-   !> Erase the line.
+   !> Erase the line of progress.
    subroutine finish(self)
       class(terminal_progress), intent(inout) :: self
 
@@ -77,6 +83,7 @@ contains
       self%shown = .false.
    end subroutine finish
 
+   !> Time of the system clock [s].
    real(wp) function seconds()
       integer(int64) :: count, rate
 
@@ -84,7 +91,7 @@ contains
       seconds = real(count, wp)/rate
    end function seconds
 
-   !> Print a line, unless an error has occurred.
+   !> Print a line on standard output, unless an error has occurred.
    subroutine say(line, error)
       character(len=*), intent(in) :: line
       type(error_type), allocatable, intent(inout) :: error
@@ -96,6 +103,7 @@ contains
       text = line//new_line('a')
       at = 1
       do while (at <= len(text))
+         ! The system may take a part only.
          written = c_write(standard_output, text(at:), int(len(text) - at + 1, c_size_t))
          if (written < 1_c_size_t) then
             call fatal_error(error, analysis_failed, 'standard output cannot be written; is the disk full?')

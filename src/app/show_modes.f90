@@ -18,8 +18,9 @@ module rbs_app_show_modes
 
 contains
 
-   !> rbsdem modes: frequencies, stable step, and the matrices if they are asked for.
+   !> rbsdem modes: print frequencies, stable step, and the matrices if they are asked for.
    subroutine show_modes(path, count, with_matrices, error)
+      !> Path of the case
       character(len=*), intent(in) :: path
       !> How many modes; 0: all
       integer, intent(in) :: count
@@ -68,8 +69,9 @@ contains
       call print_matrix('damping', matrices%unknown, matrices%damping, error)
    end subroutine show_modes
 
-   !> A matrix as csv, in N, m, kg, s and rad.
+   !> Print a matrix as csv, in N, m, kg, s and rad.
    subroutine print_matrix(name, unknown, a, error)
+      !> Name of the matrix, and names of its unknowns, which stand at columns and rows
       character(len=*), intent(in) :: name, unknown(:)
       real(wp), intent(in) :: a(:, :)
       type(error_type), allocatable, intent(inout) :: error

@@ -14,8 +14,10 @@ module rbs_app_signals
    !> Numbers of signals: hangup, interrupt, broken pipe, end, file too large.
    integer(c_int), parameter :: hangup = 1, interrupt = 2, broken_pipe = 13, termination = 15, too_large = 25
 
+   !> Actions on a signal that are no procedure, as C has them
    integer(c_intptr_t), parameter :: by_default = 0_c_intptr_t, ignored = 1_c_intptr_t
 
+   !> Longest path
    integer, parameter :: longest = 4096
 
    !> Path of the file that is kept when the process is stopped, zero bytes if there is none, and the path
@@ -48,27 +50,31 @@ contains
       integer(c_int) :: descriptor, status
       integer :: i
 
+      ! Streams 0, 1 and 2 that are closed are opened as the empty device.
       ! A file that is opened first would otherwise become the standard output.
       do
          descriptor = c_open('/dev/null'//c_null_char, to_read)
          if (descriptor > 2_c_int .or. descriptor < 0_c_int) exit
       end do
       if (descriptor > 2_c_int) status = c_close(descriptor)
-      ! Python, which starts this program, ignores it: `rbsdem modes case.nml | head` ends as other tools do.
+      ! Python, which may start this program, ignores a broken pipe: `rbsdem modes case.nml | head` ends as
+      ! other tools do.
       before = c_signal(broken_pipe, action(by_default))
       ! A write beyond the limit of the process then fails with a message.
       before = c_signal(too_large, action(ignored))
       do i = 1, size(signals)
          before = c_signal(signals(i), c_funloc(on_signal))
-         ! As by `nohup`.
+         ! A signal that was ignored before stays ignored, as by `nohup`.
          if (transfer(before, by_default) == ignored) before = c_signal(signals(i), before)
       end do
    end subroutine prepare_process
 
    !> Keep a file under another name if the process is stopped from now on; no file if the path is empty.
    subroutine keep_if_stopped(path, name)
+      !> Path of the unfinished file, and the name that it then gets
       character(len=*), intent(in) :: path, name
 
+      ! First of all there is no file, as a signal may come at any time.
       own(1) = c_null_char
       if (len(path) == 0 .or. len(path) >= longest .or. len(name) >= longest) return
       call put(name, partial)
@@ -77,7 +83,7 @@ contains
       call put(path, own)
    end subroutine keep_if_stopped
 
-   !> Store a path such that its first letter comes last: until then there is no path.
+   !> Store a path such that its first letter comes last: until then the variable is empty.
    subroutine put(path, into)
       character(len=*), intent(in) :: path
       character(kind=c_char), volatile, intent(inout) :: into(:)
@@ -91,11 +97,13 @@ contains
 
    !> Keep the unfinished file and end by the signal.
    subroutine on_signal(number) bind(c)
+      !> Number of the signal
       integer(c_int), value :: number
       type(c_funptr) :: before
       integer(c_int) :: status
       integer(c_size_t) :: written
 
+      ! Only calls that are safe in a handler
       if (own(1) /= c_null_char) then
          status = c_rename(own, partial)
          written = c_write(2_c_int, notice, notice_length)
@@ -104,6 +112,7 @@ contains
       status = c_raise(number)
    end subroutine on_signal
 
+   !> An action that is no procedure, as a pointer.
    type(c_funptr) function action(number) result(pointer)
       integer(c_intptr_t), intent(in) :: number
 

@@ -9,7 +9,9 @@ subroutine rbs_evaluate(what, statement, nn, number, names, m, input, made, cont
    ! reads them in place and releases them with the last array that refers to them. An answer with a structure
    ! is kept too, and is `made` where this structure is asked about. `sizes`: status (0 success, 1 the run
    ! failed, 2 bad input, 3 a long run that was not started), characters of the text, numbers of the values,
-   ! values of a row, rows, and whether there is a structure (1). Another thread may read and set `control`.
+   ! values of a row, rows, and whether there is a structure (1). Another thread may read and set `control`: a
+   ! word that stops the run, and how much of it is done. Addresses are two words of 32 bits each; `nn` and
+   ! `m` are the sizes of `number` and `input`.
    use iso_c_binding, only: c_double, c_f_pointer, c_int, c_loc, c_null_ptr
    use rbs_bindings_evaluate, only: evaluate
    use rbs_bindings_exchange, only: request_type, answer_type
@@ -46,13 +48,15 @@ subroutine rbs_evaluate(what, statement, nn, number, names, m, input, made, cont
    address = 0
    if (found%kept > 0) address = transfer(c_loc(found%rows), address)
    answer = transfer(c_loc(found), answer)
+   ! With nothing to read Python gets no pointer.
    if (any(sizes([2, 3, 5, 6]) > 0)) return
    deallocate (found)
    answer = 0
 end subroutine rbs_evaluate
 
 subroutine rbs_read(answer, length, count, text, values)
-   ! Text and values of an answer, of the lengths that it has. One without rows and structure is released.
+   ! Text and values of an answer, of the lengths that `sizes` gave. An answer without rows and structure is
+   ! released.
    use iso_c_binding, only: c_double, c_f_pointer, c_int, c_null_ptr
    use rbs_bindings_exchange, only: answer_type
    implicit none
@@ -70,7 +74,7 @@ subroutine rbs_read(answer, length, count, text, values)
 end subroutine rbs_read
 
 subroutine rbs_release(answer)
-   ! Rows and structure of an answer are no longer needed.
+   ! Release an answer whose rows and structure are no longer needed.
    use iso_c_binding, only: c_f_pointer, c_int, c_null_ptr
    use rbs_bindings_exchange, only: answer_type
    implicit none

@@ -24,9 +24,9 @@ module rbs_bindings_ensembles
 
 contains
 
-   !> Time of each motion for each column, and messages on the columns. Rows: for each column
-   !> expected seconds of each motion, then 1 for each that lanes take. Text: number of the column and message
-   !> of each fault.
+   !> Expected time of each motion for each column, and messages on the columns. A row for each column:
+   !> seconds of each motion, then for each motion 1 if lanes take it, else 0. Text: number of the column and
+   !> message of each fault.
    subroutine plan_ensemble(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -42,6 +42,7 @@ contains
       columns = size(request%array('counts'))/3
       allocate (column(1), in_lanes(motions))
       allocate (answer%rows(2*motions, columns), source=0.0_wp)
+      ! Where the next column begins in statement, numbers, watches and states
       at = 1
       do i = 1, columns
          call next_column(request, i, at, motion(1), column(1), error)
@@ -54,12 +55,13 @@ contains
       if (text%length > 0) answer%text = text%text(:text%length)
    end subroutine plan_ensemble
 
-   !> Runs, each of a column, a motion and a factor of the accelerations. Rows: for each run its fate, its
-   !> measures, for each limit state but the first yield when it is reached, and the largest drifts of the
-   !> first storeys and those at the end. Text: number of the run and message of each failure.
+   !> Runs, each of a column, a motion and a factor of the accelerations. A row for each run: its fate, its
+   !> measures, for each limit state but the first yield the time when it is reached, then the largest drifts
+   !> of the first storeys and their drifts at the end; not a number where there is none. Text: number of the
+   !> run and message of each failure.
    subroutine run_ensemble(request, control, answer)
       type(request_type), intent(in) :: request
-      !> See `run_block`
+      !> Words that another thread sets and reads, see `run_block`
       integer(c_int), intent(inout), volatile :: control(2)
       type(answer_type), intent(inout) :: answer
       type(ensemble_column), allocatable :: column(:)
@@ -72,6 +74,7 @@ contains
 
       call take_motions(request, motion)
       storeys = request%whole('storeys')
+      ! The first yield is among the measures and the first of the states.
       states = 1 + request%whole('measures') - measure_count
       allocate (column(size(request%array('counts'))/3))
       at = 1
@@ -110,8 +113,8 @@ contains
       if (text%length > 0) answer%text = text%text(:text%length)
    end subroutine run_ensemble
 
-   !> The motions follow each other in the arrays; `points` has the number of points of each, along x and
-   !> along y, where that is none or as many.
+   !> Take the motions, which follow each other in the arrays; `points` has two numbers for each motion:
+   !> points along x, and along y, where there are none or as many.
    subroutine take_motions(request, motion)
       type(request_type), intent(in) :: request
       type(ensemble_motion), allocatable, intent(out) :: motion(:)
@@ -137,17 +140,20 @@ contains
       end do
    end subroutine take_motions
 
-   !> The next column of the request: the statement holds those of all columns with their settings, each
-   !> followed by `after`, the arrays `watches` and `before` the limit states of all and the states that
-   !> their runs begin in, and `counts` how many numbers, watches and numbers of its state each has.
+   !> Make the next column of the request. The statement holds the groups of all columns with their settings,
+   !> those of each column followed by `after`; the arrays `watches` and `before` hold the limit states of all
+   !> columns and the states that their runs begin in. `counts` says how many numbers, watches and numbers of
+   !> its state a column has.
    subroutine next_column(request, number, at, motion, column, error)
       type(request_type), intent(in) :: request
+      !> Number of the column
       integer, intent(in) :: number
       !> Where its statement, its numbers, its watches and its state begin; on return those of the column
       !> after it
       integer, intent(inout) :: at(4)
       !> Any of the motions
       type(ensemble_motion), intent(in) :: motion
+      !> Filled here: structure, settings, limit states and state
       type(ensemble_column), intent(inout) :: column
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
@@ -158,16 +164,19 @@ contains
       associate (counts => request%array('counts'), watches => request%array('watches'), &
                  before => request%array('before'))
          next(1) = at(1) + index(request%statement(at(1):), after)
+         ! A watch is six numbers.
          next(2:) = at(2:) + nint(counts(3*number - 2:3*number)*[1, 6, 1])
          call structure_from_statements(request%statement(at(1):next(1) - 2), &
                                      request%number(at(2):next(2) - 1), column%structure, begin, case, error)
          column%watch = watches_of(watches(at(3):next(3) - 1))
          if (allocated(column%before)) deallocate (column%before)
+         ! The state that the structure begins in, as under its dead load; one of the request replaces it.
          if (begin%is_given()) column%before = begin%stream%value(:begin%stream%count)
          if (next(4) > at(4)) column%before = before(at(4):next(4) - 1)
       end associate
       at = next
       if (allocated(error)) return
+      ! Any motion will do: it only says that the ground moves, for the choice of the method.
       loads%signal(horizontal)%value = motion%acceleration(:1)
       call choose_method(case, loads, error)
       column%analysis = case%analysis

@@ -35,10 +35,10 @@ module rbs_bindings_evaluate
 
 contains
 
-   !> Answer a request.
+   !> Answer a request: find its question in this table.
    subroutine evaluate(request, control, answer)
       type(request_type), intent(in) :: request
-      !> See `run_block`
+      !> Words that another thread sets and reads, see `run_block`
       integer(c_int), intent(inout), volatile, target :: control(2)
       type(answer_type), intent(inout) :: answer
       type(text_buffer) :: buffer
@@ -85,6 +85,7 @@ contains
       case ('spectrum')
          call find_spectrum(request%array('acceleration'), request%array('dt'), request%array('period'), &
                             request%array('damping'))
+      ! All other questions are about sections.
       case default
          call evaluate_section(request, answer)
       end select
@@ -115,6 +116,7 @@ contains
          call case%loading(1)%validate(.false., messages)
          call messages%raise(answer%error)
          if (allocated(answer%error)) return
+         ! With a height of 1 drifts stay drifts.
          call protocol_values(case%loading(1), 1.0_c_double, time, answer%value, answer%error)
       end subroutine make_protocol
 
@@ -131,6 +133,7 @@ contains
 
       !> Peaks of relative displacement, relative velocity and absolute acceleration for each period.
       subroutine find_spectrum(acceleration, dt, period, damping)
+         !> Acceleration of the ground [m/s2], its step [s], periods [s], damping ratio
          real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
 
          allocate (answer%rows(3, size(period)))
@@ -139,7 +142,8 @@ contains
 
    end subroutine evaluate
 
-   !> Parts of a frame, and notes on a structure that is allowed, a line each; its modes; or its matrices.
+   !> Answer with parts of a frame and notes on a structure that is allowed, a line each; with its modes; or
+   !> with its matrices.
    subroutine evaluate_structure(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout), target :: answer
@@ -149,6 +153,7 @@ contains
       type(message_list) :: notes
 
       if (associated(request%made)) then
+         ! The structure of an answer that Python still holds
          structure => request%made%structure
       else
          call structure_from_statements(request%statement, request%number, answer%structure, answer%before, &
@@ -175,7 +180,8 @@ contains
 
    contains
 
-      !> The modes of a structure.
+      !> Answer with the modes of a structure: values are the stable step [s] and the circular frequencies
+      !> [rad/s], a row for each mode is its shape.
       subroutine answer_modes()
          type(modes_type) :: modes
          integer, allocatable :: count
@@ -215,8 +221,10 @@ contains
          end do
       end subroutine answer_modes
 
-      !> The matrices of a structure, with the names of its unknowns.
+      !> Answer with the matrices of a structure, mass, stiffness, geometric stiffness and damping one after
+      !> the other, and the names of its unknowns.
       subroutine answer_matrices(paper)
+         !> Whether the mass is that of the paper
          logical, intent(in) :: paper
          type(matrices_type) :: matrices
          integer :: i
@@ -234,12 +242,13 @@ contains
 
    end subroutine evaluate_structure
 
-   !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
-   !> tabs between. Values: for the nodes x, y, floor and mass; for the members numbers of their nodes,
-   !> compression under dead load; for the springs positions in the clear length and initial stiffness; the
-   !> mass along x.
+   !> Answer with the parts of a frame. Text: names of nodes, of members and of the springs of members ('C-1-1
+   !> flexure bilinear'), a line each with tabs between. Values: for the nodes x, y, floor and mass; for the
+   !> members numbers of their nodes, compression under dead load [N]; for the springs positions in the clear
+   !> length and initial stiffness; the mass along x [kg].
    subroutine list_parts(frame, node_mass, answer)
       type(frame_type), intent(in) :: frame
+      !> Masses along x (nodes) [kg]
       real(c_double), intent(in) :: node_mass(:)
       type(answer_type), intent(inout) :: answer
       character(len=1), parameter :: tab = achar(9), line = new_line('a')
@@ -283,7 +292,9 @@ contains
 
    contains
 
+      !> Add one spring to text and values.
       subroutine add_spring(kind, rule, k)
+         !> Word for the kind, name of the rule, initial stiffness [N/m, N m]
          character(len=*), intent(in) :: kind, rule
          real(c_double), intent(in) :: k
 

@@ -10,6 +10,7 @@ module rbs_bindings_exchange
 
    public :: request_type, answer_type
 
+   !> A question of Python, see `rbs_bindings_evaluate`.
    type :: request_type
       !> Name of the question
       character(len=:), allocatable :: what
@@ -26,11 +27,12 @@ module rbs_bindings_exchange
       procedure :: array, whole, wants
    end type request_type
 
+   !> What Python gets.
    type :: answer_type
       type(error_type), allocatable :: error
       character(len=:), allocatable :: text
       real(c_double), allocatable :: value(:)
-      !> A row of Python a column; if not all of them count, how many do
+      !> Each column of the array is a row for Python; if not all of them count, `kept` is how many do
       real(c_double), allocatable :: rows(:, :)
       integer :: kept = -1
       !> A structure, which all analyses of it share, and the state that they begin in
@@ -40,14 +42,16 @@ module rbs_bindings_exchange
 
 contains
 
-   !> One of the arrays; empty if it is not given.
+   !> The numbers of one of the named arrays, in place; empty if it is not given.
    function array(self, name) result(values)
       class(request_type), intent(in) :: self
+      !> Name of the array
       character(len=*), intent(in) :: name
       real(c_double), pointer, contiguous :: values(:)
       character(len=20) :: length
       integer :: first, last, mark, at, count
 
+      ! The arrays stand in `input` in the order of their names.
       at = 0
       first = 1
       do while (first <= len(self%names))
@@ -63,9 +67,10 @@ contains
       values => self%input(1:0)
    end function array
 
-   !> A whole number that is given.
+   !> A whole number, the first of a named array, which must be given.
    integer function whole(self, name)
       class(request_type), intent(in) :: self
+      !> Name of the array
       character(len=*), intent(in) :: name
       real(c_double), pointer, contiguous :: values(:)
 
@@ -73,9 +78,10 @@ contains
       whole = nint(values(1))
    end function whole
 
-   !> Whether a switch is given and on.
+   !> Whether a switch, a named array, is given and not zero.
    logical function wants(self, name)
       class(request_type), intent(in) :: self
+      !> Name of the switch
       character(len=*), intent(in) :: name
 
       wants = any(abs(self%array(name)) > 0.0_c_double)

@@ -18,14 +18,16 @@ module rbs_bindings_files
 
    public :: case_from_file, case_to_text, groups_of_file, test_from_file
 
+   !> Number of quantities that a loading may prescribe
    integer, parameter :: drives = size(drive_names)
 
 contains
 
    !> Read a case, with all the checks of the executable. Text and values: title, column, analysis and output
-   !> as a statement. Rows: for each of the drives whether it acts, then its values; before them the times,
-   !> which always act.
+   !> as a statement. Rows: the times with 1 before them, then for each of `drive_names` 1 if it acts and its
+   !> values, else zeros.
    subroutine case_from_file(path, answer)
+      !> Path of the case
       character(len=*), intent(in) :: path
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
@@ -33,6 +35,7 @@ contains
       class(structure_type), allocatable :: structure
       type(end_state) :: before
       type(case_text) :: statements
+      !> Drive of a static path: 1 displacement, 2 force
       integer :: column, m, i
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
@@ -47,14 +50,17 @@ contains
          ! The motion is not known yet: the choice of the method waits for it.
          if (.not. case%analysis%named) case%analysis%method = 'auto'
       else if (case%analysis%dynamic()) then
+         ! Signals are the drives behind the displacement.
          do i = 1, signals
             call sample(history%loads%signal(i), history%time, answer%rows(:, 1 + i))
          end do
       else
          column = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
          answer%rows(:, column) = [1.0_c_double, history%target]
+         ! The fifth drive is the axial load.
          if (size(history%axial_load) > 0) answer%rows(:, 5) = [1.0_c_double, history%axial_load]
       end if
+      ! Loadings are in the rows, not in the statement.
       case%loadings = 0
       statements%is_statement = .true.
       call write_case(case, statements)
@@ -62,8 +68,9 @@ contains
       answer%value = statements%numbers%value(:statements%numbers%count)
    end subroutine case_from_file
 
-   !> The groups of a case in SI with its loadings as they are given, not as histories.
+   !> Read the groups of a case in SI with its loadings as they are given, not as histories.
    subroutine groups_of_file(path, answer)
+      !> Path of the case
       character(len=*), intent(in) :: path
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
@@ -78,10 +85,13 @@ contains
       answer%value = statements%numbers%value(:statements%numbers%count)
    end subroutine groups_of_file
 
-   !> Whether a signal acts, and its values at common times; at its own points they are exactly its values.
+   !> Set whether a signal acts, and its values at common times; at its own points they are exactly its
+   !> values.
    subroutine sample(signal, time, row)
       type(signal_type), intent(inout) :: signal
+      !> Times [s]
       real(c_double), intent(in) :: time(:)
+      !> 1 if it acts, then its values
       real(c_double), intent(inout) :: row(:)
       integer :: i, at
 
@@ -100,7 +110,7 @@ contains
       end do
    end subroutine sample
 
-   !> The case as the text of a file.
+   !> Write a case as the text of a file.
    subroutine case_to_text(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -113,8 +123,8 @@ contains
       answer%text = text%buffer%text(:text%buffer%length)
    end subroutine case_to_text
 
-   !> Displacements [m] and forces [N] of a measured test, and its name. The text of the request: units of
-   !> both, empty for those of the file, and the path, with line ends between.
+   !> Read displacements [m] and forces [N] of a measured test, and its name. The text of the request has
+   !> three lines: units of both, empty for those of the file, and the path.
    subroutine test_from_file(text, answer)
       character(len=*), intent(in) :: text
       type(answer_type), intent(inout) :: answer

@@ -29,16 +29,18 @@ module rbs_bindings_runs
 
    public :: run_analysis, choose_method, watches_of
 
-   !> Code of the "error" that a long run was not started, as the user has not been `told` of it.
+   !> Code of the "error" that a long run was not started, as the user has not been `told` how long it is.
    integer, parameter :: long_run = 3
 
-   !> Share of the run that has been completed, in parts of a thousand, which another thread reads.
+   !> The share of the run that has been completed, in parts of a thousand, in a word which another thread
+   !> reads.
    type, extends(observer_type) :: word_progress
       integer(c_int), pointer :: word => null()
    contains
       procedure :: update
    end type word_progress
 
+   !> An analysis with what it needs and fills.
    type :: run_type
       class(structure_type), pointer :: structure => null()
       !> Settings of analysis and output
@@ -51,6 +53,7 @@ module rbs_bindings_runs
 
 contains
 
+   !> Note the share, from 0 to 1, that has been completed.
    subroutine update(self, share)
       class(word_progress), intent(inout) :: self
       real(wp), intent(in) :: share
@@ -58,14 +61,14 @@ contains
       self%word = nint(1000.0_wp*share, c_int)
    end subroutine update
 
-   !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is
-   !> reached first [s] and the displacement of the top then [m], not numbers where it is not; figures of the
-   !> run; the state at its end, if there is one. The text is the method, the reason for it, how the run
-   !> ended, the channels of the rows, the names of the figures, and a note on a run that succeeded, a line
-   !> each.
+   !> Run a static path or a response in time. Rows: those of the run. Values: when each of the `watches` is
+   !> reached first [s], then the displacement of the top at these times [m], not numbers where a watch is not
+   !> reached; figures of the run; the state at its end, if there is one. Text, a line each: method, the
+   !> reason for it, how the run ended, the channels of the rows, the names of the figures, and notes on a run
+   !> that succeeded.
    subroutine run_analysis(request, control, answer)
       type(request_type), intent(in) :: request
-      !> See `run_block`
+      !> Words that another thread sets and reads: the first stops the run, the second is its progress
       integer(c_int), intent(inout), volatile, target :: control(2)
       type(answer_type), intent(inout) :: answer
       type(run_type), target :: run
@@ -94,6 +97,7 @@ contains
          run%task%control => control(1)
          run%progress%word => control(2)
          run%task%progress => run%progress
+         ! A state of the request replaces that of the structure.
          associate (before => request%array('before'))
             if (size(before) > 0) then
                run%task%before%stream%value = before
@@ -110,6 +114,7 @@ contains
       if (.not. allocated(answer%error)) then
          call run_notes(run%structure, run%task%summary, run%recorder%spans, notes)
          if (notes%count > 0) note = notes%text
+      ! A run that failed keeps its rows and figures; wrong input has none.
       else if (answer%error%code /= analysis_failed) then
          return
       end if
@@ -136,7 +141,7 @@ contains
 
    contains
 
-      !> Static path through the `target`s.
+      !> Run a static path through the values of `target`, displacements [m] or forces [N].
       subroutine run_cyclic(error)
          type(error_type), allocatable, intent(out) :: error
          real(c_double), pointer, contiguous :: target(:)
@@ -152,7 +157,7 @@ contains
                          request%array('axial_load'))
       end subroutine run_cyclic
 
-      !> Response in time under the excitations that are given.
+      !> Run a response in time under the signals that are given.
       subroutine run_time_history(error)
          type(error_type), allocatable, intent(out) :: error
          type(loads_type) :: loads
@@ -171,12 +176,13 @@ contains
          associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)
             call plan_dynamic(structure, analysis, time, loads, plan, error)
             if (allocated(error)) return
+            ! A run longer than the user's patience needs consent first.
             if (.not. request%wants('told') .and. expected_seconds(structure, plan) >= patience) then
                call long_run_note(structure, plan, note)
                call fatal_error(error, long_run, note)
                return
             end if
-            ! Deformations, then velocities; none: at rest.
+            ! Deformations of the springs, then their velocities; without numbers at rest
             start => request%array('initial')
             if (size(start) > 0) then
                initial%deformation = start(:size(structure%location))
@@ -188,14 +194,16 @@ contains
          end associate
       end subroutine run_time_history
 
-      !> One of the excitations, if it is given.
+      !> Take one of the signals, if it is given.
       subroutine take_signal(name, time, signal, error)
+         !> Name of the signal, and times of its values [s]
          character(len=*), intent(in) :: name
          real(c_double), intent(in) :: time(:)
          type(signal_type), intent(inout) :: signal
          type(error_type), allocatable, intent(inout) :: error
          real(c_double), pointer, contiguous :: value(:)
 
+         ! An array without values is still given, so the name is looked for.
          if (allocated(error) .or. index(' '//request%names, ' '//name//':') == 0) return
          value => request%array(name)
          if (size(value) /= size(time)) then
@@ -209,8 +217,9 @@ contains
 
    end subroutine run_analysis
 
-   !> Validate the case without its column.
+   !> Validate the settings of a case without its structure.
    subroutine check_settings(case, error)
+      !> Analysis and output count
       type(case_record), intent(inout) :: case
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
@@ -223,6 +232,7 @@ contains
 
    !> Choose the method of an analysis in time if the user has not named one, and check its settings.
    subroutine choose_method(case, loads, error)
+      !> Its method is set here; loads by which it is chosen
       type(case_record), intent(inout) :: case
       type(loads_type), intent(in) :: loads
       type(error_type), allocatable, intent(out) :: error
@@ -240,8 +250,8 @@ contains
       end if
    end subroutine choose_method
 
-   !> Limit states to watch for, from the numbers of the user: state, joint, factors of slip, rotation and
-   !> opening, threshold of each.
+   !> Limit states to watch for, from six numbers of the user for each: state, joint, factors of slip,
+   !> rotation and opening, and threshold of their sum.
    pure function watches_of(numbers) result(watch)
       real(c_double), intent(in) :: numbers(:)
       type(watch_type) :: watch(size(numbers)/6)

@@ -27,8 +27,8 @@ module rbs_bindings_sections
 
 contains
 
-   !> Strains, curvatures and loads come as arrays of the request; the settings are those of a group of its
-   !> statement.
+   !> Answer a question about a section. Strains, curvatures and loads come as arrays of the request; the
+   !> settings are those of a group of its statement.
    subroutine evaluate_section(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -72,12 +72,14 @@ contains
 
    contains
 
-      !> Moments and curvatures under an axial load; the settings are those of the group diagram.
+      !> Answer with axial capacity, moments at curvatures, or named points; the settings are those of the
+      !> group `diagram`.
       subroutine bend_section()
          type(laws_type) :: laws
          type(resultants_type) :: least, most
          type(events_type) :: events
          real(c_double), pointer, contiguous :: curvature(:)
+         !> Strains at the two axial loads, which are not asked for here
          real(c_double) :: strain(2)
 
          associate (given => reader%diagram)
@@ -108,7 +110,7 @@ contains
          end associate
       end subroutine bend_section
 
-      !> Figures of the flexural spring, and cracking, yield, peak and ultimate.
+      !> Answer with the figures of the flexural spring; rows: points of cracking, yield, peak and ultimate.
       subroutine fit_spring()
          type(flexural_spring_type) :: spring
 
@@ -123,10 +125,11 @@ contains
                                 values_of_point(spring%peak), values_of_point(spring%ultimate)], [4, 4])
       end subroutine fit_spring
 
-      !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a
-      !> layer sheared, and the axial load is lost, then the profile of the layers at the last point.
+      !> Answer with the points of a shear diagram, then its knee and its last point, as rows. Values: whether
+      !> the knee was found, a layer sheared, the axial load was lost; then the profile of the layers at the
+      !> last point.
       subroutine follow_shear_diagram(curvature)
-         !> [1/m]
+         !> Curvatures to follow [1/m]
          real(c_double), intent(in) :: curvature(:)
          type(shear_diagram_type) :: diagram
          type(message_list) :: messages
@@ -148,8 +151,10 @@ contains
                         diagram%y, diagram%eps_x, diagram%tau, diagram%gamma, diagram%eps_z]
       end subroutine follow_shear_diagram
 
-      !> Stresses of unconfined concrete, compression positive; the tension law is that of the group diagram.
+      !> Answer with stresses of unconfined concrete [Pa], compression positive; the tension law is that of
+      !> the group `diagram`.
       subroutine respond_concrete(strain)
+         !> Compression positive
          real(c_double), intent(in) :: strain(:)
          type(concrete_type) :: law
          type(message_list) :: messages
@@ -162,12 +167,14 @@ contains
          answer%value = concrete_stress(law, strain)
       end subroutine respond_concrete
 
-      !> Strips: y of the centroid and area of the core, then of the cover. Values: the confining stress [Pa]
-      !> at y < 0 and y > 0, then the volume of the hoops over that of the core times their yield stress [Pa].
+      !> Cut the section into strips. Rows: y of the centroid [m] and area [m2] of the core, then of the
+      !> cover. Values: the confining stress [Pa] at y < 0 and at y > 0, then for both the volume of the hoops
+      !> over that of the core times their yield stress [Pa].
       subroutine cut_section(round_core, number, held)
+         !> Whether the core has a round outline; number of strips
          logical, intent(in) :: round_core
          integer, intent(in) :: number
-         !> Bars that legs hold
+         !> Number of bars that legs hold, as the only value
          real(c_double), intent(in) :: held(:)
          type(confinement_form) :: form
          type(confinement_type) :: found(2)
@@ -192,8 +199,9 @@ contains
          end do
       end subroutine cut_section
 
-      !> The rules of the named points must apply to the section.
+      !> Refuse rules of the named points that do not apply to the section.
       subroutine check_rule(confined, rule, error)
+         !> Whether confined concrete counts, and the rule that the user chose for yielding
          logical, intent(in) :: confined
          type(rule_type), intent(in) :: rule
          type(error_type), allocatable, intent(out) :: error

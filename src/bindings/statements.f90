@@ -2,7 +2,7 @@
 !>
 !> The text has a line for each group: its name, then its keys, separated by tabs. `key` takes the next
 !> number, `key:5` the next five, `key=word` a text; `values:5` of a spring are all parameters of its rule
-!> in their order. Keys are set by the setter, like those of a case file.
+!> in their order. A group reader sets keys, like those of a case file.
 module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -24,12 +24,14 @@ module rbs_bindings_statements
 
 contains
 
-   !> Set all groups of a text.
+   !> Set all groups of a text, with their numbers one after the other; nothing more after the first message.
    subroutine put_statements(text, number, setter, messages)
       character(len=*), intent(in) :: text
       real(c_double), intent(in), contiguous :: number(:)
+      !> It is given the groups, and holds them after
       type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
+      !> Line of a group in the text; numbers that have been taken
       integer :: first, last, at
 
       at = 0
@@ -42,8 +44,9 @@ contains
 
    contains
 
-      !> Set one group.
+      !> Set one group from its line: name and items with tabs between.
       subroutine put_group(line)
+         !> Line of the text
          character(len=*), intent(in) :: line
          integer :: first, last
          logical :: ok
@@ -58,8 +61,9 @@ contains
          end do
       end subroutine put_group
 
-      !> Set one key to its value.
+      !> Set one key to its value: an item as `key`, `key:5` or `key=word`.
       subroutine put_item(item)
+         !> What stands between two tabs
          character(len=*), intent(in) :: item
          integer :: mark, key_index, count
 
@@ -84,6 +88,7 @@ contains
 
    !> Set a case from its text and numbers, without validation.
    subroutine case_from_statements(text, number, case, error)
+      !> Groups, and the numbers of their keys
       character(len=*), intent(in) :: text
       real(c_double), intent(in), contiguous :: number(:)
       type(case_record), intent(out) :: case
@@ -96,8 +101,9 @@ contains
       case = setter%case
    end subroutine case_from_statements
 
-   !> Validate and make a structure; the rest of the case is set but not validated.
+   !> Validate and make the structure of a text; the rest of its case is set but not validated.
    subroutine structure_from_statements(text, number, structure, before, case, error, is_part)
+      !> Groups, and the numbers of their keys
       character(len=*), intent(in) :: text
       real(c_double), intent(in), contiguous :: number(:)
       class(structure_type), allocatable, intent(out) :: structure
@@ -113,8 +119,9 @@ contains
       if (.not. allocated(error)) call make_structure(case, structure, before, error)
    end subroutine structure_from_statements
 
-   !> Validate a single spring, given as the only one of the group flexure.
+   !> Validate a single spring, which the text gives as the only one of the group flexure.
    subroutine spring_from_statements(text, number, axial_load, spring, error)
+      !> Group, and the numbers of its keys
       character(len=*), intent(in) :: text
       real(c_double), intent(in), contiguous :: number(:)
       !> Axial load on the layers, if there are any [N]
@@ -133,6 +140,7 @@ contains
       call spring%validate(trim(spring%rule)//' spring', messages)
       call messages%raise(error)
       if (allocated(error)) return
+      ! Layers must be able to carry the axial load.
       call spring%make(rule)
       call check_axial_load(rule, axial_load, capacity)
       if (capacity /= '') call fatal_error(error, bad_input, 'layered spring: '//capacity)

@@ -32,6 +32,8 @@ module rbs_loading_loading_record
       !> One of `source_names`
       character(len=16) :: source = ''
       character(len=:), allocatable :: file
+      !> Format of the file, its columns by name or number, unit of the values and factor on them; time from
+      !> row to row [s]
       character(len=16) :: format = 'auto'
       character(len=64) :: column = '', time_column = ''
       character(len=16) :: unit = ''
@@ -39,10 +41,13 @@ module rbs_loading_loading_record
       !> A protocol of the literature, the unit of its amplitudes and the largest of them
       character(len=16) :: protocol = ''
       real(wp) :: reference = unset, largest = unset
+      !> Amplitudes to both sides, one a step, in `unit`, and cycles at each; how often all is run, points on
+      !> a quarter of a cycle, and duration of a cycle [s]
       real(wp), allocatable :: amplitudes(:), negative_amplitudes(:)
       integer, allocatable :: cycles(:)
       integer :: repeats = 1, points = 25
       real(wp) :: period = unset
+      !> Times [s] and values that are given in the case itself
       real(wp), allocatable :: time(:), values(:)
    contains
       procedure :: visit, settle, has_time, validate, inline_values
@@ -89,7 +94,7 @@ contains
       call v%key('values', self%values, '', any_value, 'the values themselves', most_values)
    end subroutine visit
 
-   !> Find the source if it is not named.
+   !> Find the source from what is given, if it is not named; a file comes before all others.
    subroutine settle(self)
       class(loading_record), intent(inout) :: self
 
@@ -108,8 +113,9 @@ contains
                  self%time_column /= ''
    end function has_time
 
-   !> The units that the values of a drive may have.
+   !> The units that the values of a quantity in `drive_names` may have.
    function units_of(drive) result(units)
+      !> One of `drive_names`
       character(len=*), intent(in) :: drive
       type(unit_type), allocatable :: units(:)
 
@@ -132,6 +138,7 @@ contains
       real(wp), allocatable, intent(out) :: value(:)
       integer :: i
 
+      ! Without an interval the numbers of the points, from 0, are the times.
       value = to_si(self%values*self%scale, unit_named(units_of(self%drive), self%unit))
       if (allocated(self%time)) then
          time = self%time
@@ -151,6 +158,7 @@ contains
       call self%check('loading', messages)
       if (self%drive == '') call check_name(self%drive, drive_names, 'loading: drive', messages, drive)
       if (self%source == '') call check_name(self%source, source_names, 'loading: source', messages, source)
+      ! The first two drives are displacement and force.
       drive = findloc(drive_names == self%drive, .true., dim=1)
       if (.not. dynamic .and. drive > 2 .and. self%drive /= 'axial_load') then
          call messages%add("loading: drive = '"//trim(self%drive)//"' needs a dynamic analysis; set "// &
@@ -193,7 +201,7 @@ contains
          call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', messages, number)
       end subroutine check_unit
 
-      !> Check cycles: those of a named protocol, or of amplitudes.
+      !> Check the cycles of a protocol: of a named one, or of amplitudes.
       subroutine validate_protocol()
 
          if (self%protocol /= '') then
@@ -225,7 +233,7 @@ contains
          end if
       end subroutine validate_named
 
-      !> Check cycles of amplitudes.
+      !> Check amplitudes: as many as negative ones and as cycles, and no key of named protocols.
       subroutine validate_amplitudes()
 
          if (is_given(self%reference) .or. is_given(self%largest)) then
@@ -247,7 +255,7 @@ contains
          end if
       end subroutine validate_amplitudes
 
-      !> Check a loading of values point by point.
+      !> Check values that are given point by point: as many as times.
       subroutine validate_values()
 
          if (.not. allocated(self%values)) then

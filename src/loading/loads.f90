@@ -10,10 +10,11 @@ module rbs_loading_loads
    public :: loads_type
    public :: lateral, horizontal, vertical, top_axial, sideways, signals, signal_names
 
+   !> The signals of all loads, each a table of its own times.
    type :: loads_type
-      !> Signals, in the order of `lateral` and so on [N, m/s2, m/s2, N]; one without points is zero
+      !> Signals, in the order of `lateral` and so on [N, m/s2, m/s2, N, m/s2]; one without points is zero
       type(signal_type) :: signal(signals)
-      !> Which of them act; found by `find_acting`
+      !> Which signals act; found by `find_acting`
       logical :: acts(signals) = .false.
    contains
       procedure :: find_acting, set_begin, at_time, corner_after, find_largest
@@ -21,7 +22,7 @@ module rbs_loading_loads
 
 contains
 
-   !> Find which of them act; to be called once before `at_time`.
+   !> Find which signals act; to be called once before `at_time`.
    subroutine find_acting(self)
       class(loads_type), intent(inout) :: self
 
@@ -30,7 +31,7 @@ contains
       self%acts(vertical) = self%signal(vertical)%is_nonzero()
    end subroutine find_acting
 
-   !> Count times from a begin.
+   !> Count the times of all signals from a begin.
    subroutine set_begin(self, begin)
       class(loads_type), intent(inout) :: self
       !> Time of the clock there [s]
@@ -42,11 +43,12 @@ contains
       end do
    end subroutine set_begin
 
-   !> All loads at a time.
+   !> Values of all signals at a time. The signals are changed: they keep the interval that was found.
    subroutine at_time(self, t, load)
       class(loads_type), intent(inout) :: self
       !> Time [s]
       real(wp), intent(in) :: t
+      !> In the order of `lateral` and so on (signals) [N, m/s2, m/s2, N, m/s2]
       real(wp), intent(out) :: load(signals)
       integer :: i
 
@@ -59,6 +61,7 @@ contains
    !> The first time after t at which a load changes its slope; `huge` if there is none [s].
    real(wp) function corner_after(self, t) result(corner)
       class(loads_type), intent(inout) :: self
+      !> Time [s]
       real(wp), intent(in) :: t
       integer :: i
 
@@ -71,6 +74,7 @@ contains
    !> Largest values of the loads, in size.
    pure subroutine find_largest(self, largest)
       class(loads_type), intent(in) :: self
+      !> In the order of `lateral` and so on (signals) [N, m/s2, m/s2, N, m/s2]
       real(wp), intent(out) :: largest(signals)
       integer :: i
 

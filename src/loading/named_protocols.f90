@@ -21,18 +21,22 @@ module rbs_loading_named_protocols
 
    !> Amplitudes in ascending order with their cycles, and the rule of further ones.
    type :: ladder_type
+      !> `in_drift` or `in_reference`
       integer :: counted = in_drift
       !> Meaning of the reference of the protocol
       character(len=40) :: reference = ''
+      !> Amplitudes, as drifts or as multiples of the reference, and numbers of cycles at each (steps)
       real(wp), allocatable :: amplitude(:)
       integer, allocatable :: cycles(:)
       !> Every step is followed by as many cycles at a smaller amplitude, a factor of its own; 0: by none
+      !> (steps)
       integer, allocatable :: trailing(:)
       real(wp) :: trailing_factor = 0.0_wp
-      !> Each further step is higher by this, with this many cycles; 0: it ends
+      !> Behind the last step each further one is higher by `rise`, with this many cycles, and cycles that
+      !> trail; 0: no further step
       real(wp) :: rise = 0.0_wp
       integer :: further_cycles = 0, further_trailing = 0
-      !> Whether it has no end of its own
+      !> Whether only a largest amplitude ends the protocol
       logical :: endless = .false.
    end type ladder_type
 
@@ -46,6 +50,8 @@ contains
       real(wp), intent(in) :: reference
       !> Bound of the amplitudes; not above zero: the end of the protocol itself
       real(wp), intent(in) :: largest
+      !> Amplitudes as drifts, or in the unit of the reference, and cycles at each; smaller ones that trail
+      !> are steps of their own (steps)
       real(wp), allocatable, intent(out) :: amplitudes(:)
       integer, allocatable, intent(out) :: cycles(:)
       type(error_type), allocatable, intent(out) :: error
@@ -74,8 +80,9 @@ contains
 
    contains
 
-      !> The steps of a ladder up to the largest amplitude, trailing cycles as steps of their own.
+      !> Set the steps of the ladder up to the largest amplitude.
       subroutine climb()
+         !> Amplitude of a step, bound of all, and amplitude of the last step that the ladder states
          real(wp) :: amplitude, most, top
          integer :: step, last, count, trailing
 
@@ -123,6 +130,7 @@ contains
 
    !> Whether the amplitudes of a protocol are drifts, and not multiples of its reference.
    logical function counted_in_drift(name)
+      !> One of `protocol_names`
       character(len=*), intent(in) :: name
       type(ladder_type) :: ladder
 
@@ -130,9 +138,11 @@ contains
       counted_in_drift = allocated(ladder%amplitude) .and. ladder%counted == in_drift
    end function counted_in_drift
 
-   !> The ladder of a protocol; without amplitudes if there is none of the name.
+   !> The ladder of a protocol; without amplitudes if there is no protocol of the name.
    subroutine make_ladder(name, reference, ladder)
+      !> One of `protocol_names`, or another word
       character(len=*), intent(in) :: name
+      !> Only for 'aci_374_2', whose numbers of cycles depend on it
       real(wp), intent(in) :: reference
       type(ladder_type), intent(out) :: ladder
       integer :: i

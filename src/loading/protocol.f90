@@ -39,6 +39,7 @@ contains
       else
          positive = spec%amplitudes
          allocate (cycles(size(positive)), source=1)
+         ! One number of cycles serves all steps.
          if (allocated(spec%cycles)) cycles = spec%cycles(min([(j, j=1, size(cycles))], size(spec%cycles)))
       end if
       negative = positive
@@ -61,10 +62,11 @@ contains
          do step = 1, size(cycles)
             do cycle = 1, cycles(step)
                do j = 1, 4*quarter
-                  ! The triangle wave of unit amplitude, exact at its peaks and zeros
+                  ! The triangle wave between -1 and 1, exact at its peaks and zeros: up, and down from the
+                  ! first quarter on
                   up = merge(2*quarter - j, j, j > quarter)
                   wave = real(merge(j - 4*quarter, up, j > 3*quarter), wp)/quarter
-                  ! Zero has no sign.
+                  ! Adding zero gives a negative zero the sign of a positive one.
                   value(at + j) = merge(positive(step), negative(step), wave > 0.0_wp)*wave + 0.0_wp
                end do
                at = at + 4*quarter
@@ -76,9 +78,11 @@ contains
       time = [((j - 1)*interval, j=1, size(value))]
    end subroutine protocol_values
 
-   !> Amplitude in SI; drift is displacement over height.
+   !> Amplitude in SI, with the factor `scale`; drift, the unit of displacements without another, is
+   !> displacement over height.
    real(wp) function si_amplitude(spec, amplitude, height) result(si)
       type(loading_record), intent(in) :: spec
+      !> In the unit of the loading; height of the column [m]
       real(wp), intent(in) :: amplitude, height
 
       si = amplitude*spec%scale

@@ -13,7 +13,8 @@ module rbs_loading_signal
       real(wp), allocatable :: value(:)
       !> The interval of the last call: time runs forward, so the next interval is the same or near
       integer, private :: at = 1
-      !> The line in that interval: value = start + slope (t - begin)
+      !> The line in that interval, from `begin` to `finish` [s]: value = start + slope (t - begin). As long
+      !> as none is known, the end is before the begin
       real(wp), private :: begin = 1.0_wp, finish = -1.0_wp, start = 0.0_wp, slope = 0.0_wp
    contains
       procedure :: at_time, corner_after, acts, is_nonzero, replace
@@ -29,7 +30,7 @@ contains
       acts = allocated(self%value)
    end function acts
 
-   !> Whether it has a value that is not zero.
+   !> Whether the signal has a value that is not zero.
    pure logical function is_nonzero(self)
       class(signal_type), intent(in) :: self
 
@@ -37,8 +38,9 @@ contains
       if (is_nonzero) is_nonzero = any(abs(self%value) > 0.0_wp)
    end function is_nonzero
 
-   !> Value at a time; before the first point the first value, after the last the last. At a point it is the
-   !> end of the interval before it, from wherever one comes: a run has the same bits with any neighbours.
+   !> Value at a time; before the first point the first value, after the last one the last. At a point it is
+   !> the end of the interval before it, from whichever side one comes: a run has the same bits with any
+   !> neighbours.
    real(wp) function at_time(self, t) result(value)
       class(signal_type), intent(inout) :: self
       !> Time [s]
@@ -55,14 +57,16 @@ contains
       real(wp), intent(in) :: t
       real(wp) :: after
 
+      ! A time that is the point but for round-off is past it.
       after = t + 8.0_wp*spacing(t)
       if (after < self%begin .or. after >= self%finish) call self%find(after)
       corner = self%finish
    end function corner_after
 
-   !> Take other points, as many as there are.
+   !> Take other points, as many as there are, and forget the interval.
    pure subroutine replace(self, time, value)
       class(signal_type), intent(inout) :: self
+      !> Times, strictly ascending (m) [s], and values (m)
       real(wp), intent(in) :: time(:), value(:)
 
       self%time(:) = time
@@ -75,6 +79,7 @@ contains
    !> Find the interval that holds t, and keep its line.
    subroutine find(self, t)
       class(signal_type), intent(inout) :: self
+      !> Time [s]
       real(wp), intent(in) :: t
       integer :: last
 
@@ -93,6 +98,7 @@ contains
          self%at = last
          return
       end if
+      ! From the last interval, backward or forward
       self%at = min(self%at, last - 1)
       do while (t < self%time(self%at))
          self%at = self%at - 1

@@ -56,7 +56,9 @@ contains
 
    !> Peaks of the response of one oscillator, also of its free vibration after the motion.
    pure subroutine peaks_of(acceleration, dt, period, damping, peak)
+      !> Acceleration of the ground (m) [m/s2], step and natural period [s], damping ratio
       real(wp), intent(in) :: acceleration(:), dt, period, damping
+      !> Largest displacement, velocity and absolute acceleration (3) [m, m/s, m/s2]
       real(wp), intent(out) :: peak(:)
       type(exact_step) :: step
       real(wp) :: h, z(2), a0, a1, from, rise
@@ -69,6 +71,7 @@ contains
       z = 0.0_wp
       peak = 0.0_wp
       a0 = h**2*acceleration(1)
+      ! A step of the record is divided into equal parts.
       do i = 2, size(acceleration)
          from = h**2*acceleration(i - 1)
          rise = (h**2*acceleration(i) - from)/parts
@@ -84,12 +87,16 @@ contains
       peak = peak/[1.0_wp, h, h**2]
    end subroutine peaks_of
 
-   !> One step, and the peaks at its end and inside it.
+   !> Advance the oscillator by one step, and note the peaks at its end and inside it.
    pure subroutine advance(step, a0, a1, z, peak)
+      !> Exact step, see `exact_step`
       type(exact_step), intent(in) :: step
       !> Acceleration of the ground at both ends, times the step squared
       real(wp), intent(in) :: a0, a1
+      !> Displacement and velocity, times the step; largest displacement, velocity and absolute acceleration
+      !> so far, in the same units
       real(wp), intent(inout) :: z(2), peak(:)
+      !> Relative acceleration, absolute acceleration and its rate, at both ends
       real(wp) :: old(2), x0, x1, total0, total1, slope0, slope1
 
       old = z
@@ -112,9 +119,10 @@ contains
       end if
    end subroutine advance
 
-   !> The step by the series of the exponential, which has no differences of large numbers and holds for any
-   !> damping.
+   !> Make the exact step by the series of the exponential, which has no differences of large numbers and
+   !> holds for any damping.
    pure subroutine make_step(theta, damping, step)
+      !> Circular frequency times the step; damping ratio
       real(wp), intent(in) :: theta, damping
       type(exact_step), intent(out) :: step
       real(wp) :: power(2, 2), weight

@@ -52,6 +52,7 @@ contains
    !> Fill a row in the order of the channels.
    pure subroutine fill(self, structure, response, springs, deformation, row)
       class(channel_list), intent(in) :: self
+      !> The structure, its response at the time, and its springs on their present lines
       class(structure_type), intent(in) :: structure
       type(response_type), intent(in) :: response
       type(spring_array), intent(in) :: springs
@@ -67,13 +68,14 @@ contains
       call structure%fill_row(self%contents, response, springs, deformation, row(common + 1:))
    end subroutine fill
 
-   !> Names of the values of a row with their units, and the SI units.
+   !> Names of the values of a row with their units, as 'shear_2_kN', and the SI units.
    subroutine get_labels(self, units, label, si)
       class(channel_list), intent(in) :: self
       !> Units of the labels
       type(unit_system), intent(in) :: units
       !> (width)
       character(len=32), allocatable, intent(out) :: label(:)
+      !> SI units of the values (width)
       character(len=4), allocatable, intent(out) :: si(:)
       integer :: i, j, at
 
@@ -92,9 +94,11 @@ contains
       end do
    end subroutine get_labels
 
-   !> Values of a row before those of a channel.
+   !> Number of the values of a row before those of a channel, which is 0 if there is no such channel in front
+   !> of it.
    pure integer function before(self, name)
       class(channel_list), intent(in) :: self
+      !> Name of a channel of this run
       character(len=*), intent(in) :: name
 
       before = sum(max(self%channel(:findloc(self%channel%name == name, .true., dim=1) - 1)%count, 1))
@@ -126,7 +130,7 @@ contains
       end do
    end function channel_units
 
-   !> A unit as written in a label: 'Nm'.
+   !> A unit without its blanks, as it is written in a label: 'Nm' for 'N m'.
    pure function without_blanks(unit) result(text)
       character(len=*), intent(in) :: unit
       character(len=len(unit)) :: text

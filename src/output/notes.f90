@@ -24,7 +24,7 @@ module rbs_output_notes
 
    public :: drift_note, run_notes, structure_notes, largest_small, largest_ground, much
 
-   !> Least and largest height of a column [m]: one in millimetres is outside.
+   !> Least and largest height of a column [m]: a height in millimetres is outside.
    real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp
 
    !> No hinge of concrete or steel yields later [rad].
@@ -38,26 +38,28 @@ module rbs_output_notes
    !> Lateral strength beside the axial load, M/(h P): a column ten times as long as deep has 0.01 or more.
    real(wp), parameter :: too_weak = 0.003_wp
 
-   !> Storeys and bays outside of these are in another unit, or none of a building [m].
+   !> Storeys and bays outside of these lengths are in another unit, or of no building [m].
    real(wp), parameter :: lowest_storey = 1.0_wp, widest_bay = 60.0_wp
 
    !> Young's moduli of building materials [Pa].
    real(wp), parameter :: least_modulus = 1.0e8_wp, largest_modulus = 1.0e12_wp
 
-   !> Radii of gyration above are those of no member [m].
+   !> Radii of gyration above this are those of no member [m].
    real(wp), parameter :: largest_radius = 10.0_wp
 
-   !> Stresses at the yield moment of a solid section of the same area and inertia [Pa]: a moment in kN m is
-   !> below.
+   !> Stresses at the yield moment of a solid section of the same area and inertia [Pa]: with a moment in kN m
+   !> it is below.
    real(wp), parameter :: least_stress = 1.0e5_wp, largest_stress = 1.0e10_wp
 
    !> Bending stiffness over that of the softest kind, beyond which digits of the softer members are lost.
    real(wp), parameter :: far_stiffer = 1.0e7_wp
 
-   !> Masses [kg] and loads [N/m] below are those of no floor of storeys as high as that [m].
+   !> Masses [kg] and loads [N/m] below these are those of no floor, where storeys are as high as `low_storey`
+   !> [m].
    real(wp), parameter :: least_mass = 200.0_wp, least_load = 100.0_wp, low_storey = 2.0_wp
 
-   !> Period of buildings of height h, 0.075 h^(3/4) (EN 1998-1, 4.3.3.2.2), and how often it may go into one.
+   !> Period of buildings of height h, 0.075 h^(3/4) [s] (EN 1998-1, 4.3.3.2.2), and the largest ratio of both
+   !> periods.
    real(wp), parameter :: usual_period = 0.075_wp, most_periods = 25.0_wp
 
    !> Rotations larger than this are not small [rad].
@@ -66,8 +68,8 @@ module rbs_output_notes
    !> Share of the energies that the balance may miss.
    real(wp), parameter :: much = 0.05_wp
 
-   !> Share of its Euler load that the load along an inclined member may be, and how much of it is the error
-   !> of displacements: 1/4.93 - 1/7.84 in units of E I/l^2, of a cantilever with half of it at its top.
+   !> Share of its Euler load that the load along an inclined member may be; error of displacements over this
+   !> share: 1/4.93 - 1/7.84 in units of E I/l^2, of a cantilever with half of the load at its top.
    real(wp), parameter :: much_along = 0.01_wp, error_along = 0.74_wp
 
    !> No ground has moved with more [m/s2].
@@ -81,11 +83,11 @@ module rbs_output_notes
 
 contains
 
-   !> Notes on a run that has ended.
+   !> Add the notes on a run that has ended.
    subroutine run_notes(structure, summary, spans, notes)
       class(structure_type), intent(in) :: structure
       type(summary_type), intent(in) :: summary
-      !> That watched the rows of the run
+      !> The watch over the rows of the run
       type(span_watch), intent(in) :: spans
       type(message_list), intent(inout) :: notes
 
@@ -96,7 +98,7 @@ contains
          call notes%add('the ground: its peak is '//to_text(summary%peak_ground/standard_gravity)// &
                         ' g; no ground has moved with more than 5 g, and accelerations are in m/s2')
       end if
-      ! Explicit steps near their limit lose energy as they must; those of frames are implicit.
+      ! Explicit steps near their limit lose energy as they must; only implicit ones, of frames, are judged.
       if (.not. structure%is_implicit .or. .not. summary%time_step > 0.0_wp) return
       if (.not. summary%residual > much*summary%largest) return
       call notes%add('the balance of energy misses '// &
@@ -105,7 +107,7 @@ contains
                      'shorter dt')
    end subroutine run_notes
 
-   !> Rotations that are taken as small but have grown large. The error of sin(th) is th^2/6 of it, and
+   !> Note rotations that are taken as small but have grown large. The error of sin(th) is th^2/6 of it, and
    !> that of cos(th), which lever arms contain, th^2/2: together 2 th^2/3.
    subroutine rotation_note(structure, summary, notes)
       class(structure_type), intent(in) :: structure
@@ -116,12 +118,13 @@ contains
 
       ! A run to its collapse was asked for, and its rotations are known to be large.
       if (summary%collapsed) return
+      ! Exact rotations may be large.
       if (structure%kinematics == finite) return
       ! The displacements of a path are given, those of a response in time are not.
       if (.not. summary%time_step > 0.0_wp) then
          before = notes%count
          call drift_note(structure, summary%peak_displacement, notes)
-         ! That note names the remedy of a column; frames have none, and err by what the next says.
+         ! That note names the remedy of a column. Frames have none: they err as the next note says.
          if (notes%count > before .and. .not. structure%is_implicit) return
       end if
       if (structure%is_implicit) then
@@ -143,7 +146,7 @@ contains
       end if
    end subroutine rotation_note
 
-   !> Rotations of frames are small ones, of their nodes and of the whole.
+   !> Note that a frame turns far: its rotations, of the nodes and of the whole, are taken as small.
    subroutine frame_rotation_note(structure, summary, notes)
       class(structure_type), intent(in) :: structure
       type(summary_type), intent(in) :: summary
@@ -157,17 +160,17 @@ contains
       end if
    end subroutine frame_rotation_note
 
-   !> A displacement beyond half of the height, which a number in another unit is.
+   !> Note a displacement beyond half of the height, as a number in another unit makes it.
    subroutine drift_note(structure, displacement, notes)
       class(structure_type), intent(in) :: structure
-      !> Largest of the top [m]
+      !> Largest displacement of the top [m]
       real(wp), intent(in) :: displacement
       type(message_list), intent(inout) :: notes
       character(len=:), allocatable :: remedy
 
       if (.not. abs(displacement) > far*structure%total_height) return
       remedy = "; if it is meant, use kinematics = 'finite'"
-      ! Rotations of frames are small.
+      ! Frames have small rotations only.
       if (structure%is_implicit) remedy = ''
       call notes%add('the top goes beyond half of the height; displacements are in m (16 mm is 0.016), '// &
                      'drifts are parts of the height (2 per cent is 0.02), forces are in N'//remedy)
@@ -175,9 +178,9 @@ contains
 
    !> Add the notes about a structure and its loading.
    subroutine structure_notes(case, structure, notes)
-      !> Validated
+      !> Validated case
       type(case_record), intent(in) :: case
-      !> Made of it
+      !> Structure that was made of it
       class(structure_type), intent(in) :: structure
       type(message_list), intent(inout) :: notes
 
@@ -194,10 +197,12 @@ contains
       end if
    end subroutine structure_notes
 
-   !> Sizes in a wrong unit, and masses without weight.
+   !> Note sizes of a frame in a wrong unit, and masses without weight.
    subroutine frame_notes(frame, notes)
       type(frame_record), intent(in) :: frame
       type(message_list), intent(inout) :: notes
+      !> Stress at the edge at yield [Pa]; whether there is mass and dead load; whether kinds have no elastic
+      !> values
       real(wp) :: stress
       integer :: i
       logical :: heavy, loaded
@@ -220,7 +225,7 @@ contains
                               '1e12 mm4 are 1, 1e6 mm2 are 1')
             end if
             if (.not. is_given(kind%yield_moment)) cycle
-            ! At the edge of a rectangle with this area and this inertia.
+            ! Of a rectangle with this area and this inertia
             stress = kind%yield_moment*sqrt(3.0_wp/(kind%inertia*kind%area))
             if (stress >= least_stress .and. stress <= largest_stress) cycle
             call notes%add(owner//'yield_moment = '//to_text(kind%yield_moment)//' N m is a stress of '// &
@@ -229,6 +234,7 @@ contains
          end associate
       end do
       call check_alike()
+      ! Springs that are given one by one
       do i = 1, size(frame%spring)
          associate (own => frame%spring(i))
             if (own%group /= 'flexure') cycle
@@ -256,7 +262,7 @@ contains
 
    contains
 
-      !> Kinds so much stiffer than others that the digits of the others are lost.
+      !> Note a kind so much stiffer than another one that digits of the other are lost.
       subroutine check_alike()
          real(wp), allocatable :: bending(:)
          integer :: soft, stiff
@@ -272,7 +278,9 @@ contains
                         "rigid member has interior = 'rigid' and no springs")
       end subroutine check_alike
 
+      !> Note storeys or bays whose lengths are those of no building.
       subroutine check_lengths(name, length)
+         !> 'storeys' or 'bays', and their lengths [m]
          character(len=*), intent(in) :: name
          real(wp), intent(in) :: length(:)
 
@@ -281,9 +289,12 @@ contains
                         to_text(maxval(length))//' m; lengths are in m, and 3200 mm is 3.2')
       end subroutine check_lengths
 
-      !> Models for a shaking table have low storeys.
+      !> Note a mass or a load that is that of no floor, but for models on a shaking table, whose storeys are
+      !> low.
       subroutine check_floor(name, value, least, unit, meant)
+         !> Key, unit and an example in it, for the message
          character(len=*), intent(in) :: name, unit, meant
+         !> Value, and the least one of a floor
          real(wp), intent(in) :: value, least
 
          if (.not. value > 0.0_wp .or. value >= least .or. minval(frame%storeys) < low_storey) return
@@ -292,13 +303,15 @@ contains
       end subroutine check_floor
    end subroutine frame_notes
 
-   !> Lateral strength of the columns at the foot that is none beside the weight of the masses, as of moments
-   !> in kN m: that of their hinges at both ends, at a rotation beyond their yield.
+   !> Note a lateral strength of the columns at the foot that is none of a building beside the weight of the
+   !> masses, as of moments in kN m: the strength is that of hinges at both ends, at a rotation beyond their
+   !> yield.
    subroutine strength_note(parts, mass, notes)
       type(frame_parts), intent(in) :: parts
-      !> Of all nodes that move [kg]
+      !> Mass of all nodes that move [kg]
       real(wp), intent(in) :: mass
       type(message_list), intent(inout) :: notes
+      !> Lateral strength [N]; clear length [m] of a column and moments of its two hinges [N m]
       real(wp) :: strength, length, hinges(2)
       integer :: i
 
@@ -311,6 +324,7 @@ contains
             if (abs(a%y - b%y) < abs(a%x - b%x)) cycle
             length = hypot(a%x - b%x, a%y - b%y) - sum(m%rigid)
             hinges = [hinge_of(m, 0.0_wp), hinge_of(m, 1.0_wp)]
+            ! A hinge without bound leaves the strength open.
             if (any(hinges < 0.0_wp)) return
             strength = strength + sum(hinges)/length
          end associate
@@ -324,15 +338,17 @@ contains
       end associate
    end subroutine strength_note
 
-   !> Moment of the hinge at an end of a member; negative where none bounds it [N m].
+   !> Moment of the hinge at an end of a member, turned by `hinge_turned` [N m]; negative where nothing bounds
+   !> it.
    real(wp) function hinge_of(m, position) result(moment)
       type(frame_member), intent(in) :: m
-      !> 0 or 1
+      !> Position of the end in shares of the length: 0 or 1
       real(wp), intent(in) :: position
       real(wp) :: f(1)
       integer :: j
 
       moment = 0.0_wp
+      ! Layers give the moment by their distances, as openings and as lever arms.
       associate (bends => abs(m%position - position) <= 0.0_wp .and. (m%kind == flexure .or. m%kind == layer))
          do j = 1, size(bends)
             if (.not. bends(j)) cycle
@@ -348,10 +364,12 @@ contains
       end associate
    end function hinge_of
 
-   !> The load along an inclined member, which does second-order work as if it were at its ends.
+   !> Note a load along an inclined member, which does second-order work as if it were at the ends of the
+   !> member.
    subroutine inclined_note(frame, notes)
       type(frame_type), intent(in) :: frame
       type(message_list), intent(inout) :: notes
+      !> Load along each member over its Euler load
       real(wp) :: share(frame%members)
       integer :: i
 
@@ -373,16 +391,18 @@ contains
                      ' per cent of them; n members in its place divide that by n squared')
    end subroutine inclined_note
 
-   !> A period that is none of a building, as of stiffness or masses in another unit: that of the sway under
-   !> the masses as loads (Rayleigh).
+   !> Note a period that is that of no building, as of stiffness or masses in another unit. The period is that
+   !> of the sway under the masses as loads along x (Rayleigh).
    subroutine period_note(structure, notes)
       class(structure_type), intent(in) :: structure
       type(message_list), intent(inout) :: notes
       type(band_matrix) :: matrix
+      !> Masses along x as loads, then displacements by them; the two periods [s]
       real(wp) :: sway(structure%unknowns), period, usual
       logical :: regular
 
       sway = -structure%pattern(horizontal)%force
+      ! A frame without mass, or with a stiffness that does not hold it, has no period.
       if (.not. any(sway > 0.0_wp)) return
       call matrix%create(structure%unknowns, structure%half_width)
       matrix%band = 0.0_wp
@@ -400,12 +420,13 @@ contains
                      'moduli in Pa, stiffness of springs is in N m/rad and N/m')
    end subroutine period_note
 
-   !> Sizes in a wrong unit, springs that seem exchanged, loads of a column that do nothing, masses without
-   !> weight: each with a remedy.
+   !> Note sizes of a column in a wrong unit, springs that seem exchanged, loads that do nothing and masses
+   !> without weight, each with a remedy.
    subroutine column_notes(spec, notes)
       !> Validated
       type(column_record), intent(in) :: spec
       type(message_list), intent(inout) :: notes
+      !> Whether joints carry the axial load by their own law
       logical :: carried
 
       if (spec%height < shortest .or. spec%height > longest) then
@@ -438,12 +459,13 @@ contains
       call balance_notes(spec, notes)
    end subroutine column_notes
 
-   !> Springs and loads that do not go together, as numbers in another unit do: the strength of the lowest
-   !> flexural spring is that of a rotation of 0.05 rad.
+   !> Note springs and loads of a column that do not go together, as numbers in another unit do. The strength
+   !> of the lowest flexural spring is its moment at a rotation of 0.05 rad.
    subroutine balance_notes(spec, notes)
       !> Validated
       type(column_record), intent(in) :: spec
       type(message_list), intent(inout) :: notes
+      !> That moment [N m], and the lateral strength by it [N]
       real(wp) :: moment(1), least
 
       ! Drawn members are judged where they are drawn; springs that never yield have no strength.
@@ -466,7 +488,7 @@ contains
       end if
    end subroutine balance_notes
 
-   !> Whether a flexural spring yields later than any hinge.
+   !> Whether a flexural spring still is on its first line at a rotation at which any hinge has yielded.
    logical function yields_late(spring)
       type(spring_record), intent(in) :: spring
       real(wp) :: moment(1)

@@ -19,6 +19,7 @@ module rbs_output_recorder
       procedure(update_interface), deferred :: update
    end type observer_type
 
+   !> What keeps the rows of a run, as an array or in a file.
    type, abstract :: recorder_type
       !> Channels of a row; where this is not set no rows are kept
       type(channel_list) :: channels
@@ -26,6 +27,7 @@ module rbs_output_recorder
       logical :: corners = .false.
       !> Watches the rows of a frame
       type(span_watch) :: spans
+      !> The present row
       real(wp), allocatable, private :: row(:)
    contains
       procedure :: keep
@@ -44,6 +46,7 @@ module rbs_output_recorder
       subroutine record_interface(self, row, error)
          import :: recorder_type, error_type, wp
          class(recorder_type), intent(inout) :: self
+         !> (width of the channels)
          real(wp), intent(in) :: row(:)
          type(error_type), allocatable, intent(inout) :: error
       end subroutine record_interface
@@ -53,8 +56,9 @@ module rbs_output_recorder
    type, extends(recorder_type) :: array_recorder
       !> Rows kept so far, and how many there will be as far as known
       integer :: count = 0, expected = 0
+      !> Rows that there is room for
       integer, private :: capacity = 0
-      !> One row a column (values of a row, rows kept and room for others)
+      !> A column of the array is a row (values of a row, capacity)
       real(wp), allocatable :: rows(:, :)
    contains
       procedure :: record
@@ -65,6 +69,7 @@ contains
    !> Make a row of a response and keep it.
    subroutine keep(self, structure, response, springs, deformation, error)
       class(recorder_type), intent(inout) :: self
+      !> The structure, its response at the time, and its springs on their present lines
       class(structure_type), intent(in) :: structure
       type(response_type), intent(in) :: response
       type(spring_array), intent(in) :: springs
@@ -74,6 +79,7 @@ contains
 
       if (self%channels%width == 0) return
       if (.not. allocated(self%row)) allocate (self%row(0))
+      ! The first row of a run, which may have other channels than the last run
       if (size(self%row) /= self%channels%width) then
          self%row = spread(0.0_wp, 1, self%channels%width)
          call self%spans%start(structure, self%channels%before('moment_from'), &
@@ -84,9 +90,10 @@ contains
       call self%record(self%row, error)
    end subroutine keep
 
-   !> Keep a row.
+   !> Keep a row behind the others.
    subroutine record(self, row, error)
       class(array_recorder), intent(inout) :: self
+      !> (width of the channels)
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), allocatable :: larger(:, :)

@@ -13,30 +13,33 @@ module rbs_output_spans
 
    public :: span_watch, hinge_turned
 
-   !> A rotation beyond the yield of hinges [rad].
+   !> A rotation beyond the yield of any hinge [rad].
    real(wp), parameter :: hinge_turned = 0.02_wp
 
-   !> Shares of the moment of its springs by which that in a span is more: of springs, and of layers, whose
-   !> moment depends on the axial load.
+   !> Ratios of the moment in a span to that of its springs above which a note is due: for springs, and for
+   !> layers, whose moment depends on the axial load.
    real(wp), parameter :: over_springs = 1.005_wp, over_layers = 1.05_wp
 
+   !> A loaded member between its springs.
    type :: span_type
-      !> Member, and w l^2/2 [N m]
+      !> Number of the member, and w l^2/2 by its load w across it [N m]
       integer :: member = 0
       real(wp) :: hung = 0.0_wp
       !> Largest moment in the span, where, in shares of the clear length, and that of its springs [N m]
       real(wp) :: largest = 0.0_wp, place = 0.0_wp, of_springs = 0.0_wp
-      !> Share of the moment of its springs that is more than it
+      !> Ratio above which a note is due
       real(wp) :: over = over_springs
    end type span_type
 
+   !> A watch over the rows of a frame.
    type :: span_watch
       !> Whether there is a span to watch
       logical :: watches = .false.
       type(span_type), allocatable, private :: span(:)
-      !> Span of each flexural spring, 0 for none; of a member with layers they alone have one
+      !> Span of each flexural spring, 0 for none (flexural springs in rows); in a member with layers only the
+      !> layers have one
       integer, allocatable, private :: owner(:)
-      !> Places in a row before the moments of the ends, and before those of the flexural springs
+      !> Places in a row before the moments of the first ends, of the last ends, and of the flexural springs
       integer, private :: from = 0, to = 0, moment = 0
    contains
       procedure :: start
@@ -46,11 +49,11 @@ module rbs_output_spans
 
 contains
 
-   !> Watch the loaded members of a frame that springs bend.
+   !> Begin to watch the members of a frame that have a load across and flexural springs or layers.
    subroutine start(self, structure, from, to, moment)
       class(span_watch), intent(out) :: self
       class(structure_type), intent(in) :: structure
-      !> Places of the moments of the ends, and of the flexural springs, in a row
+      !> Places in a row before the moments of the first ends, of the last ends, and of the flexural springs
       integer, intent(in) :: from, to, moment
       integer, allocatable :: of(:)
       logical, allocatable :: is_layer(:)
@@ -80,10 +83,12 @@ contains
       self%watches = size(self%span) > 0
    end subroutine start
 
-   !> Take a row into account.
+   !> Take a row into account: the largest moments in spans and in springs.
    pure subroutine update(self, row)
       class(span_watch), intent(inout) :: self
+      !> Values of all channels, see `channel_list`
       real(wp), intent(in) :: row(:)
+      !> Where the moment is largest, in shares of the length: the top of the parabola; the moment there
       real(wp) :: share, moment
       integer :: i
 
@@ -106,12 +111,13 @@ contains
       end do
    end subroutine update
 
-   !> Note the member whose span is bent most beyond what its springs know.
+   !> Note the member whose span is bent most beyond what its springs yield at, or have carried.
    subroutine tell(self, structure, notes)
       class(span_watch), intent(in) :: self
       class(structure_type), intent(in) :: structure
       type(message_list), intent(inout) :: notes
       character(len=:), allocatable :: more
+      !> Moments of the springs of the spans [N m]: carried, or at yield
       real(wp), allocatable :: known(:)
       type(spring_array) :: springs
       integer :: i
@@ -121,6 +127,8 @@ contains
       class is (frame_type)
          associate (s => self%span)
             known = s%of_springs
+            ! The strength takes time to find, and is not asked for if what the springs have carried covers
+            ! the span.
             if (.not. any(s%largest > s%over*known)) return
             call structure%create_springs(springs, structure%constant_axial)
             do i = 1, size(self%owner)
@@ -144,12 +152,14 @@ contains
       end select
    end subroutine tell
 
-   !> The moment of a hinge, at a rotation beyond its yield; that of layers depends on their axial load, and
-   !> is not known.
+   !> Raise a moment to that of a hinge at a rotation beyond its yield, to either side. That of layers depends
+   !> on their axial load, and is not known.
    subroutine find_strength(springs, i, moment)
       !> Virgin springs
       type(spring_array), intent(inout) :: springs
+      !> Number of the spring
       integer, intent(in) :: i
+      !> Moment that the spring has carried [N m]; not bounded if it is elastic
       real(wp), intent(inout) :: moment
       integer :: side
 

@@ -9,7 +9,7 @@ module rbs_output_summary
 
    public :: peaks_type, summary_type, figure_type
 
-   !> A figure of a summary.
+   !> A figure of a summary, as it is printed and given to Python.
    type :: figure_type
       character(len=26) :: name
       !> SI
@@ -36,6 +36,7 @@ module rbs_output_summary
       procedure :: update_peak, update_base_shear
    end type peaks_type
 
+   !> The figures of a run.
    type, extends(peaks_type) :: summary_type
       !> Whether a lateral force acts at the top
       logical :: has_force = .true.
@@ -107,7 +108,7 @@ contains
       if (abs(shear) > (1.0_wp + same_peak)*abs(self%peak_base_shear)) self%peak_base_shear = shear
    end subroutine update_base_shear
 
-   !> Take the energies of a moment into account; those of the last one stay.
+   !> Take the energies of a point or a time into account; those of the last one stay.
    pure subroutine update_energies(self, energy)
       class(summary_type), intent(inout) :: self
       type(energy_type), intent(in) :: energy
@@ -117,7 +118,8 @@ contains
       self%largest = max(self%largest, abs(energy%input), energy%kinetic + energy%spring)
    end subroutine update_energies
 
-   !> The figures that apply to the run. How far a joint falls that does not rest is not a number.
+   !> The figures that apply to the run, with names and SI units. How far a joint falls that does not rest is
+   !> not a number.
    pure subroutine get_figures(self, list)
       class(summary_type), intent(in) :: self
       type(figure_type), allocatable, intent(out) :: list(:)
@@ -162,14 +164,15 @@ contains
       list = pack(list, applies)
    end subroutine get_figures
 
-   !> Whether a joint of layers has lost its axial load, where nothing static or in time follows.
+   !> Whether a joint of layers or a member has lost its axial load, so that no state follows, static or in
+   !> time; a fall that met the criterion of collapse counts as collapse.
    pure logical function has_fallen(self)
       class(summary_type), intent(in) :: self
 
       has_fallen = self%lost_joint > 0 .or. (self%fallen_member > 0 .and. .not. self%collapsed)
    end function has_fallen
 
-   !> How the run ended, if nothing failed.
+   !> How the run ended, if nothing failed: the last of these that applies.
    pure character(len=13) function status(self)
       class(summary_type), intent(in) :: self
 

@@ -15,14 +15,14 @@ module rbs_structure_channel
       integer :: count = 0, first = 1
    end type channel_type
 
-   !> Contents of the rows of a run: those of an analysis in time, on demand openings of layered
-   !> joints and how the top moves.
+   !> Contents of the rows of a run: whether it is an analysis in time, and on demand the openings of layered
+   !> joints, and velocity and acceleration of the top.
    type :: row_contents
       logical :: in_time = .false., openings = .false., motion = .false.
    end type row_contents
 
-   !> Energies of a moment [J]: work of lateral force and ground motion; motion; springs; damping; potential
-   !> of the axial forces; lost where members snapped; residual of the balance.
+   !> Energies of a moment [J]: input of lateral force and ground motion; kinetic; in springs; lost to
+   !> damping; potential of the axial forces; lost where members snapped; residual of the balance.
    type :: energy_type
       real(wp) :: input = 0.0_wp, kinetic = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp, axial = 0.0_wp, &
                   snaps = 0.0_wp, residual = 0.0_wp

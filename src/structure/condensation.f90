@@ -60,9 +60,11 @@ module rbs_structure_condensation
 
 contains
 
-   !> Room for springs, for the stiffness of their parts, and for pairs that turn.
+   !> Make room for the springs of a row, for the stiffness of their parts, and for pairs of springs that
+   !> turn.
    subroutine create(self, springs, parts, pairs)
       class(series_tangent), intent(out) :: self
+      !> Springs of the row; springs that they are made of, as layers are; pairs that turn
       integer, intent(in) :: springs, parts, pairs
 
       allocate (self%branch(parts), self%p(3, springs), self%k(springs), self%k0(springs), &
@@ -70,9 +72,10 @@ contains
                 self%soft_shared(springs), source=0.0_wp)
    end subroutine create
 
-   !> The tangent for the first springs, from their rows and stiffness.
+   !> The tangent of a row of n springs, from their rows `p` and stiffness `k`.
    pure subroutine condense(self, n, weight, spared)
       class(series_tangent), intent(inout) :: self
+      !> Number of springs; what follows them in the arrays is not used
       integer, intent(in) :: n
       !> A stiffness against each motion of the ends, to compare rows with
       real(wp), intent(in) :: weight(3)
@@ -140,10 +143,15 @@ contains
 
    !> The softest springs with independent rows, and all rows as sums of theirs.
    pure subroutine choose_basis(n, p, soft, weight, a, to_basis, basis)
+      !> Number of springs
       integer, intent(in) :: n
+      !> Rows and compliances of the springs; a stiffness against each motion of the ends
       real(wp), intent(in) :: p(3, n), soft(n), weight(3)
+      !> Rows in the basis, P_B^-1, and the numbers of its springs, 0 where rows span less
       real(wp), intent(out) :: a(3, n), to_basis(3, 3)
       integer, intent(out) :: basis(3)
+      !> Stiffness of the present basis, its weight where it is empty; ratio that a spring must exceed to
+      !> enter
       real(wp) :: stiff(3), largest, ratio
       integer :: i, j, row, column, exchanges
 
@@ -154,7 +162,7 @@ contains
       end do
       basis = 0
       stiff = weight
-      ! The first three exchanges fill the basis, where one may; the others take softer springs into it.
+      ! The first three exchanges fill empty places of the basis; the others put softer springs into it.
       do exchanges = 1, 3 + 6*n
          largest = 0.0_wp
          if (exchanges > 3) largest = softer
@@ -183,9 +191,11 @@ contains
       end do
    end subroutine choose_basis
 
-   !> Put a spring into the basis.
+   !> Put a spring (column) into a place of the basis (row), as an exchange of linear programming does.
    pure subroutine pivot(n, row, column, a, to_basis)
+      !> Number of springs; place in the basis, from 1 to 3; number of the spring that enters
       integer, intent(in) :: n, row, column
+      !> Rows of the springs in the basis, and P_B^-1
       real(wp), intent(inout) :: a(3, n), to_basis(3, 3)
       real(wp) :: factor(3)
       integer :: i
@@ -202,7 +212,9 @@ contains
       a(row, column) = 1.0_wp
    end subroutine pivot
 
+   !> Add a a'/k of a spring to the flexibility in the basis.
    pure subroutine add_compliance(a, soft, flexibility)
+      !> Row of the spring in the basis, and its compliance
       real(wp), intent(in) :: a(3), soft
       real(wp), intent(inout) :: flexibility(3, 3)
       integer :: i
@@ -212,9 +224,11 @@ contains
       end do
    end subroutine add_compliance
 
-   !> (I + D k)^-1, whose entries are of the order of one.
+   !> (I + D k)^-1 by cofactors; its entries are of the order of one for the basis that was chosen.
    pure subroutine invert(flexibility, k, inverse, determinant)
+      !> D, and the stiffness of the basis
       real(wp), intent(in) :: flexibility(3, 3), k(3)
+      !> The inverse; det(I + D k), kept away from 0
       real(wp), intent(out) :: inverse(3, 3), determinant
       real(wp) :: m(3, 3)
       integer :: i, j, next(3), last(3)
@@ -231,11 +245,12 @@ contains
          end do
       end do
       determinant = sum(m(1, :)*inverse(:, 1))
-      ! The forces of springs that soften fall as steeply as those of the others rise: the line is upright.
+      ! Near 0 the forces of springs that soften fall as steeply as others rise, and the line is upright.
       if (abs(determinant) < no_stiffness) determinant = sign(no_stiffness, determinant)
       inverse = inverse/determinant
    end subroutine invert
 
+   !> The product of two matrices.
    pure function product_of(a, b) result(c)
       real(wp), intent(in) :: a(3, 3), b(3, 3)
       real(wp) :: c(3, 3)
@@ -250,7 +265,9 @@ contains
    !> none: all of these move as if they were alone in the row, with their initial stiffnesses.
    pure subroutine share_motion(self, n, k_basis, motion)
       class(series_tangent), intent(inout) :: self
+      !> Number of springs
       integer, intent(in) :: n
+      !> Stiffness of the basis
       real(wp), intent(in) :: k_basis(3)
       !> Of the basis per motion of the ends
       real(wp), intent(inout) :: motion(3, 3)
@@ -282,16 +299,19 @@ contains
    !> Number of negative directions of the energy inside the row while its ends are held: that of springs with
    !> a negative stiffness, less that of the flexibility of the ends (Sylvester's law of inertia).
    pure integer function negative_directions(n, k, k_basis, flexibility) result(negative)
+      !> Number of springs
       integer, intent(in) :: n
+      !> Stiffness of the springs and of the basis; D of the springs beside it
       real(wp), intent(in) :: k(n), k_basis(3), flexibility(3, 3)
       real(wp) :: s(3, 3), minor(0:3)
       integer :: i, j
 
-      ! Where the basis has no stiffness its motion is not in question.
+      ! Where the basis has no stiffness its motion is not in question: 1 stands in its place.
       do j = 1, 3
          s(:, j) = k_basis*flexibility(:, j)*k_basis(j)
          s(j, j) = s(j, j) + merge(k_basis(j), 1.0_wp, abs(k_basis(j)) > 0.0_wp)
       end do
+      ! Leading minors: a change of sign is a negative direction.
       minor = [1.0_wp, s(1, 1), s(1, 1)*s(2, 2) - s(1, 2)**2, &
                s(1, 1)*(s(2, 2)*s(3, 3) - s(2, 3)**2) - s(1, 2)*(s(1, 2)*s(3, 3) - s(2, 3)*s(1, 3)) &
                + s(1, 3)*(s(1, 2)*s(2, 3) - s(2, 2)*s(1, 3))]
@@ -311,9 +331,11 @@ contains
       integer, intent(in), contiguous :: place(:)
       !> Motion of the ends less that by the deformations
       real(wp), intent(in) :: misfit(3)
+      !> Forces of the ends
       real(wp), intent(out) :: s(3)
       !> In the places forces of the springs, then the corrections
       real(wp), intent(inout), contiguous :: x(:)
+      !> Misfit that is left; effect of the mechanism on its basis; force out of balance, then correction
       real(wp) :: left(3), flexed(3), out
       integer :: j
 
@@ -349,9 +371,10 @@ contains
       end do
    end subroutine correct
 
-   !> Effect of forces on a spring less its force, term by term. Round-off of it is none: a spring
-   !> all but without stiffness would move far for it, and back in the next trial.
+   !> Effect of forces on a spring, which is a sum of three terms, less its force. Round-off of it counts as
+   !> zero: a spring all but without stiffness would move far for it, and back in the next trial.
    pure real(wp) function unbalance(force, first, second, third)
+      !> Force of the spring; the terms p s of the three forces of the ends
       real(wp), intent(in) :: force, first, second, third
 
       unbalance = (first + second + third) - force

@@ -32,9 +32,10 @@ module rbs_structure_dynamic_stiffness
 
 contains
 
-   !> x' M y.
+   !> x' M y of two motions of the unknowns (unknowns).
    pure real(wp) function mass_product(self, x, y) result(total)
       class(dynamic_stiffness), intent(in) :: self
+      !> Displacements or velocities (unknowns)
       real(wp), intent(in), contiguous :: x(:), y(:)
 
       total = sum(self%inertia*x*y)
@@ -80,6 +81,7 @@ contains
    contains
 
       logical function carries(multiple)
+         !> Factor of all axial forces
          real(wp), intent(in) :: multiple
 
          carries = self%factor(0.0_wp, multiple) == 0
@@ -87,13 +89,13 @@ contains
 
    end function critical_multiple
 
-   !> The dynamic stiffness of bands, from which held unknowns are taken out.
+   !> The dynamic stiffness of bands; held unknowns get a stiffness of one and no connection to the others.
    subroutine create(self, inertias, is_held, stiffness, geometric)
       class(dynamic_stiffness), intent(out) :: self
       !> Masses, and whether supports hold an unknown (unknowns)
       real(wp), intent(in) :: inertias(:)
       logical, intent(in) :: is_held(:)
-      !> K and K_G (half-width + 1, unknowns); the latter only where axial forces count
+      !> K and K_G (half-width + 1, unknowns), the latter only where axial forces count; they move into `self`
       real(wp), allocatable, intent(inout) :: stiffness(:, :), geometric(:, :)
 
       self%inertia = merge(0.0_wp, inertias, is_held)
@@ -107,7 +109,9 @@ contains
 
    contains
 
+      !> Clear rows and columns of held unknowns in a band, and put a number on their diagonal.
       subroutine take_out_held(diagonal, band)
+         !> Number for the diagonal; lower band of K or K_G
          real(wp), intent(in) :: diagonal
          real(wp), intent(inout) :: band(:, :)
          integer :: i, j
@@ -126,7 +130,7 @@ contains
       class(dynamic_stiffness), intent(inout) :: self
       !> Square of a circular frequency [1/s2]
       real(wp), intent(in) :: s
-      !> One, if it is not given
+      !> Factor of the axial forces; 1, if it is not given
       real(wp), intent(in), optional :: multiple
       real(wp) :: share
 
@@ -143,35 +147,39 @@ contains
       below = self%matrix%negative
    end function factor
 
-   !> Solve (K - s M) d = M x with the last factor, in the coordinates in which shapes are kept.
+   !> Solve (K - s M) d = M x with the last factor, in the coordinates of shapes, which here are the unknowns.
    subroutine solve(self, x, d)
       class(dynamic_stiffness), intent(in) :: self
+      !> Motion whose inertia forces act (unknowns)
       real(wp), intent(in), contiguous :: x(:)
+      !> (unknowns)
       real(wp), intent(out), contiguous :: d(:)
 
       d = self%inertia*x
       call self%matrix%substitute(d)
    end subroutine solve
 
-   !> The unknowns x of a shape d.
+   !> The unknowns x of a shape d: the shape itself, but for chains, whose shapes are deformations.
    pure subroutine motion(self, d, x)
       class(dynamic_stiffness), intent(in) :: self
+      !> Shape, and the unknowns of it (unknowns)
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(out), contiguous :: x(:)
 
       x(:size(self%inertia)) = d
    end subroutine motion
 
-   !> d' K d, axial forces included.
+   !> d' K d, axial forces included; d and x are one motion, as a shape and in the unknowns, here the same.
    pure real(wp) function stiffness_of(self, d, x) result(total)
       class(dynamic_stiffness), intent(in) :: self
+      !> (unknowns)
       real(wp), intent(in), contiguous :: d(:), x(:)
 
       total = quadratic_form(self%stiffness, d, x)
       if (allocated(self%geometric)) total = total + quadratic_form(self%geometric, d, x)
    end function stiffness_of
 
-   !> d' A x of a symmetric band.
+   !> d' A x of a symmetric matrix A, given as its lower band (half-width + 1, unknowns).
    pure real(wp) function quadratic_form(band, d, x) result(total)
       real(wp), intent(in), contiguous :: band(:, :), d(:), x(:)
       integer :: i, n
@@ -183,7 +191,8 @@ contains
       end do
    end function quadratic_form
 
-   !> The trace of M^-1 K; unknowns without mass that follow the others make those only softer.
+   !> The trace of M^-1 K, a bound of the sum of squared frequencies [1/s2]: unknowns without mass, which
+   !> follow the others, make those only softer.
    pure real(wp) function sum_of_squares(self) result(total)
       class(dynamic_stiffness), intent(in) :: self
       real(wp) :: k(size(self%inertia))

@@ -35,6 +35,7 @@ contains
 
       write (joint, '(i0)') location%joint
       name = 'the '//trim(kinds(location%kind))//' spring of joint '//joint
+      ! Springs of a frame have an owner; those from the ground have no joint, those of panels no member.
       if (location%owner == '') return
       if (location%joint == 0) then
          name = 'the '//trim(kinds(location%kind))//' spring from the ground to '//location%owner

@@ -195,10 +195,11 @@ module rbs_structure_structure
    end type motion_result
 
    abstract interface
+      !> Changes of the deformations of the springs from those of the unknowns.
       subroutine gather(self, tangent, dx, dd)
          import :: structure_type, series_tangent, wp
          class(structure_type), intent(in) :: self
-         !> See `linearise`
+         !> Parts between the unknowns on the present lines of the springs, see `linearise`
          type(series_tangent), intent(in) :: tangent(:)
          !> (unknowns)
          real(wp), intent(in), contiguous :: dx(:)
@@ -206,6 +207,7 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: dd(:)
       end subroutine gather
 
+      !> Changes of the unknowns from those of the deformations.
       pure subroutine spread_out(self, dd, dx)
          import :: structure_type, wp
          class(structure_type), intent(in) :: self
@@ -215,11 +217,13 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: dx(:)
       end subroutine spread_out
 
-      !> Forces of springs, of loads but the inertia of the moving ground, and of axial forces.
+      !> Forces on the unknowns: of springs, of loads but for the inertia of the moving ground, and of axial
+      !> forces.
       subroutine collect(self, d, load, axial, tangent, f, g, correction, dead)
          import :: structure_type, series_tangent, wp
          class(structure_type), intent(in) :: self
-         !> Deformations (springs), signals of the loads, axial forces (see `axial_forces`)
+         !> Deformations (springs), signals of the loads (signals), axial forces (those of `axial_forces`, or
+         !> none)
          real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
          !> See `linearise`
          type(series_tangent), intent(in) :: tangent(:)
@@ -227,15 +231,18 @@ module rbs_structure_structure
          real(wp), intent(inout), contiguous :: f(:)
          !> (unknowns) [N, N m]
          real(wp), intent(out), contiguous :: g(:)
-         !> Of the deformations, to bring the parts between the unknowns to equilibrium (springs, or none)
+         !> Changes of the deformations that bring the parts between the unknowns to equilibrium (springs, or
+         !> none)
          real(wp), intent(inout), contiguous :: correction(:)
          !> Share of the dead load of a frame that acts; without it, all
          real(wp), intent(in), optional :: dead
       end subroutine collect
 
+      !> Axial forces that do second-order work, of the constant loads and of those given.
       subroutine find_axial_forces(self, load, axial)
          import :: structure_type, wp
          class(structure_type), intent(in) :: self
+         !> Signals of the loads (signals)
          real(wp), intent(in), contiguous :: load(:)
          !> Compression positive, in the order of the structure [N]
          real(wp), intent(out), contiguous :: axial(:)
@@ -256,18 +263,21 @@ module rbs_structure_structure
       subroutine assemble(self, k, band)
          import :: structure_type, wp
          class(structure_type), intent(in) :: self
-         !> Axial forces
+         !> Axial forces, as `axial_forces` gives them
          real(wp), intent(in), contiguous :: k(:)
          !> (half_width + 1, unknowns)
          real(wp), intent(inout), contiguous :: band(:, :)
       end subroutine assemble
 
+      !> A number that depends on the position alone.
       pure real(wp) function of_position(self, d)
          import :: structure_type, wp
          class(structure_type), intent(in) :: self
+         !> Deformations of the springs (springs)
          real(wp), intent(in), contiguous :: d(:)
       end function of_position
 
+      !> Absolute rotations of the bodies.
       pure subroutine find_rotations(self, d, rotation)
          import :: structure_type, wp
          class(structure_type), intent(in) :: self
@@ -277,14 +287,17 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: rotation(:)
       end subroutine find_rotations
 
+      !> Refuse loads that do nothing.
       subroutine refuse_loads(self, acts, error)
          import :: structure_type, error_type, signals
          class(structure_type), intent(in) :: self
          !> Which loads act (signals)
          logical, intent(in) :: acts(signals)
+         !> Set where a load is refused
          type(error_type), allocatable, intent(inout) :: error
       end subroutine refuse_loads
 
+      !> Channels of the rows of a run, besides those of all structures.
       pure subroutine list_channels(self, contents, channel)
          import :: structure_type, row_contents, channel_type
          class(structure_type), intent(in) :: self
@@ -292,6 +305,7 @@ module rbs_structure_structure
          type(channel_type), allocatable, intent(out) :: channel(:)
       end subroutine list_channels
 
+      !> Values of these channels at a time.
       pure subroutine fill_values(self, contents, response, springs, d, row)
          import :: structure_type, row_contents, response_type, spring_array, wp
          class(structure_type), intent(in) :: self
@@ -310,6 +324,7 @@ contains
    !> Make room for the forces of a structure, under its axial forces at rest.
    subroutine create(self, structure)
       class(motion_result), intent(out) :: self
+      !> The structure that moves
       class(structure_type), intent(in) :: structure
       real(wp) :: at_rest(signals)
       integer :: inside
@@ -331,7 +346,7 @@ contains
       real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
       !> Number of axial forces that do second-order work: all, or none where none does
       integer, intent(in) :: pressing
-      !> With axial forces, and with those of springs and damping, to which `forces` adds
+      !> It has the axial forces, and forces of springs and damping in `f`; it gets forces and accelerations
       type(motion_result), intent(inout) :: result
       real(wp) :: speed(self%unknowns)
 
@@ -355,6 +370,7 @@ contains
    !> the top along x [m/s], momentum along x relative to the ground with its sign turned [kg m/s].
    pure real(wp) function speed(self, signal, d, v)
       class(structure_type), intent(in) :: self
+      !> Number of the signal, `lateral` to `sideways`
       integer, intent(in) :: signal
       !> Deformations of the springs and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
@@ -373,6 +389,7 @@ contains
    !> Power of the loads, constant ones left out [W].
    pure real(wp) function power_of_patterns(self, d, v, load) result(watt)
       class(structure_type), intent(in) :: self
+      !> Deformations of the springs and their velocities (springs); signals of the loads (signals)
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
       integer :: j
 
@@ -385,6 +402,7 @@ contains
    !> Energy of a motion relative to the ground [J].
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
       class(structure_type), intent(in) :: self
+      !> Deformations of the springs and their velocities (springs); only their number and the latter count
       real(wp), intent(in), contiguous :: d(:), v(:)
       real(wp) :: x(self%unknowns)
 
@@ -395,6 +413,7 @@ contains
    !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
    pure real(wp) function largest_rotation(self, d) result(largest)
       class(structure_type), intent(in) :: self
+      !> Deformations of the springs, or changes of them (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: rotation(self%n)
 
@@ -405,14 +424,16 @@ contains
    !> Displacement of the top along x [m].
    pure real(wp) function top_displacement(self, d) result(x)
       class(structure_type), intent(in) :: self
+      !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
 
       x = inner_product(size(d), self%arm, d)
    end function top_displacement
 
-   !> Drift ratios of the storeys; there are none.
+   !> Drift ratios of the storeys; a structure that is no frame has none.
    pure subroutine storey_drifts(self, d, drift)
       class(structure_type), intent(in) :: self
+      !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
       !> (storeys)
       real(wp), intent(out), contiguous :: drift(:)
@@ -423,6 +444,7 @@ contains
    !> The drift that collapse is judged by, in size: of the storeys, or of the top over the height.
    pure real(wp) function largest_drift(self, d) result(drift)
       class(structure_type), intent(in) :: self
+      !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: storey(self%storeys)
 
@@ -446,18 +468,20 @@ contains
    !> Axial force at a spring under loads, compression positive [N].
    pure real(wp) function axial_force(self, spring, load)
       class(structure_type), intent(in) :: self
+      !> Number of the spring; signals of the loads (signals), which some structures add
       integer, intent(in) :: spring
       real(wp), intent(in) :: load(:)
 
       axial_force = self%constant_axial(spring)
    end function axial_force
 
-   !> Bound of the acceleration of a spring under the present loads and forces.
+   !> Bound of the acceleration of a spring under the present loads and forces [m/s2, rad/s2].
    pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
       class(structure_type), intent(in) :: self
       !> Which spring, and all of them
       integer, intent(in) :: spring
       type(spring_array), intent(in) :: springs
+      !> Signals of the loads (signals)
       real(wp), intent(in) :: load(:)
 
       scale = abs(springs%force(spring))/maxval(self%inertias) + abs(load(horizontal))
@@ -491,6 +515,7 @@ contains
       class(structure_type), intent(in) :: self
       !> Whether the constant axial forces count
       logical, intent(in) :: axial
+      !> One part here; a chain that opens has two
       class(dynamic_stiffness), allocatable, intent(out) :: part(:)
       real(wp), allocatable :: stiffness(:, :), geometric(:, :)
       real(wp) :: at_rest(signals), force(self%axial_count)
@@ -508,7 +533,7 @@ contains
    end subroutine dynamic_parts
 
    !> The number by which the constant axial forces must be multiplied to buckle the structure before any
-   !> spring yields, see `critical_multiple`.
+   !> spring yields; `huge` if no multiple does.
    real(wp) function critical_factor(self) result(factor)
       class(structure_type), intent(in) :: self
       class(dynamic_stiffness), allocatable :: part(:)
@@ -519,16 +544,18 @@ contains
       factor = part(1)%critical_multiple()
    end function critical_factor
 
-   !> Momenta of a shape of vibration, conjugate to its coordinates.
+   !> Momenta of a shape of vibration, conjugate to its coordinates, which here are the unknowns.
    pure subroutine momenta(self, shape, momentum)
       class(structure_type), intent(in) :: self
+      !> (unknowns)
       real(wp), intent(in), contiguous :: shape(:)
+      !> (unknowns) [kg m, kg m2 times the unit of the shape]
       real(wp), intent(out), contiguous :: momentum(:)
 
       momentum = self%inertias*shape
    end subroutine momenta
 
-   !> Loads at the top of a frame are dead loads of its nodes.
+   !> Note the axial load at the top. In a frame it does no more: its loads are dead loads of the nodes.
    subroutine put_under(self, load)
       class(structure_type), intent(inout) :: self
       !> Compression positive [N]
@@ -537,9 +564,10 @@ contains
       self%axial_load = load
    end subroutine put_under
 
-   !> A member that fails in the present state of the springs, 0: none.
+   !> The number of a member that fails in the present state of the springs, 0: none; only frames have any.
    integer function next_failed_member(self, springs, time) result(member)
       class(structure_type), intent(in) :: self
+      !> Springs in their present state
       type(spring_array), intent(in) :: springs
       !> [s]; on a static path no member is removed by time
       real(wp), intent(in), optional :: time
@@ -547,14 +575,15 @@ contains
       member = 0
    end function next_failed_member
 
-   !> Take away all forces of a member.
+   !> Take away all forces of a member; here there is none to take, as only frames have members that fail.
    subroutine remove_member(self, member, springs)
       class(structure_type), intent(in) :: self
+      !> Number of the member; springs, which lose its forces
       integer, intent(in) :: member
       type(spring_array), intent(inout) :: springs
    end subroutine remove_member
 
-   !> Whether a part has fallen beyond the range of small rotations.
+   !> Whether a part has fallen beyond the range of small rotations; only frames lose parts.
    pure logical function has_collapsed(self, d)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs (springs)
@@ -572,11 +601,12 @@ contains
       spring = 0
    end function unbounded_spring
 
-   !> Tangent on the present stiffness of the springs; none where deformations follow from the unknowns.
+   !> Tangent on the present stiffness of the springs; here none, as deformations follow from the unknowns.
    subroutine linearise(self, k, tangent, unstable, shares)
       class(structure_type), intent(in) :: self
       !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
+      !> One for each part between the unknowns: none here
       type(series_tangent), intent(inout) :: tangent(:)
       !> A part whose springs determine its motion no more; 0: none
       integer, intent(out) :: unstable
@@ -587,7 +617,7 @@ contains
       if (present(shares)) shares = .false.
    end subroutine linearise
 
-   !> Add forces of the damping of modes or stiffness, where it is no damping of the springs one by one.
+   !> Add forces of the damping of modes or stiffness that is no damping of the springs one by one; here none.
    subroutine damp(self, v, tangent, g)
       class(structure_type), intent(in) :: self
       !> Velocities of the unknowns (unknowns); see `linearise`
@@ -597,15 +627,17 @@ contains
       real(wp), intent(inout), contiguous :: g(:)
    end subroutine damp
 
-   !> Add the derivative of these forces by velocity, times a factor, to a band.
+   !> Add the derivative of forces of damping by velocity, with its sign turned and times a factor, to a band;
+   !> here nothing is added.
    subroutine add_damping(self, factor, tangent, band)
       class(structure_type), intent(in) :: self
+      !> Factor; tangent, see `linearise`; lower band (half_width + 1, unknowns)
       real(wp), intent(in) :: factor
       type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
    end subroutine add_damping
 
-   !> Sizes of forces and works in parts that have no spring, measures of round-off; there are none.
+   !> Sizes of forces and works in parts that have no spring, measures of round-off; here no part is without.
    subroutine size_of_parts(self, springs, least, force, terms, work)
       class(structure_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -621,23 +653,23 @@ contains
    end subroutine size_of_parts
 
    !> Take rates that are round-off of larger ones for zero: a spring at rest on a corner of its curve, as
-   !> beside a mechanism, must not be sent either way.
+   !> beside a mechanism, must not be sent either way. Structures that need it override this empty procedure.
    pure subroutine clear_round_off(self, tangent, dx, k, dd)
       class(structure_type), intent(in) :: self
       !> See `linearise`
       type(series_tangent), intent(in) :: tangent(:)
       !> Rates of the unknowns (unknowns); stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: dx(:), k(:)
-      !> Of the springs (springs)
+      !> Rates of the deformations (springs)
       real(wp), intent(inout), contiguous :: dd(:)
    end subroutine clear_round_off
 
    !> A shape of vibration in the order of the structure, with its sign: the masses move to +x.
    subroutine set_shape(self, part, found, shape)
       class(structure_type), intent(in) :: self
-      !> Of `dynamic_parts`
+      !> Number of the part of `dynamic_parts` that vibrates
       integer, intent(in) :: part
-      !> In the order of the part
+      !> The shape, in the order of the part
       real(wp), intent(in), contiguous :: found(:)
       !> (unknowns), zero
       real(wp), intent(inout), contiguous :: shape(:)
@@ -645,7 +677,7 @@ contains
       shape = sign(1.0_wp, -self%work_of(horizontal, found))*found
    end subroutine set_shape
 
-   !> Work of a dead load that grows on a static path; there is none.
+   !> Work of a dead load that grows on a static path [J]; only frames have one.
    pure real(wp) function work_of_dead_load(self, d) result(work)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs, or changes of them (springs)
@@ -657,6 +689,7 @@ contains
    !> The springs without deformation, layered joints under given axial forces.
    subroutine create_springs(self, springs, axial_force)
       class(structure_type), intent(in), target :: self
+      !> Virgin springs
       type(spring_array), intent(out) :: springs
       !> Compression positive (springs) [N]
       real(wp), intent(in), contiguous :: axial_force(:)
@@ -667,9 +700,10 @@ contains
       call springs%create(self%rules, work_source, axial_force, self%coordinates, self%joints)
    end subroutine create_springs
 
-   !> Add the inertia of the moving ground.
+   !> Add the inertia of the moving ground: all signals but those of forces.
    pure subroutine add_ground(self, load, g)
       class(structure_type), intent(in) :: self
+      !> Signals of the loads
       real(wp), intent(in) :: load(signals)
       !> Forces on the unknowns (unknowns)
       real(wp), intent(inout), contiguous :: g(:)
@@ -685,7 +719,7 @@ contains
       end do
    end subroutine add_ground
 
-   !> Base shear of a structure in which it is not the force of one spring [N].
+   !> Base shear of a structure in which it is not the force of one spring [N]; such structures override this.
    real(wp) function base_force(self, d, f) result(force)
       class(structure_type), intent(in) :: self
       !> Deformations and forces of the springs (springs)
@@ -697,6 +731,7 @@ contains
    !> Work of a load that keeps its direction, per unit of its signal.
    pure real(wp) function work_of(self, signal, moved) result(work)
       class(structure_type), intent(in) :: self
+      !> Number of the signal
       integer, intent(in) :: signal
       !> Displacements of the unknowns (unknowns)
       real(wp), intent(in), contiguous :: moved(:)

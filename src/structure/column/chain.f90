@@ -25,11 +25,14 @@ contains
 
    !> Deformations of the joints from displacements of the bodies, d = B x.
    pure subroutine deformations(n, kinds, lower, upper, x, d)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
       !> Kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: kinds
-      !> Distances from the centroid to bottom and top (n) [m]; (2 n or 3 n)
+      !> Distances from the centroid of each body to its bottom and top (n) [m]; displacements of the bodies
+      !> in the order of the unknowns (2 n or 3 n)
       real(wp), intent(in) :: lower(n), upper(n), x(kinds*n)
+      !> Slips, then relative rotations, then openings of the joints, all set here (2 n or 3 n) [m, rad, m]
       real(wp), intent(inout) :: d(kinds*n)
       integer :: i
 
@@ -48,11 +51,15 @@ contains
 
    !> Displacements of the bodies from deformations of the joints, from the ground up.
    pure subroutine displacements(n, kinds, lower, upper, d, x)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
       !> Kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: kinds
+      !> Distances from the centroids to bottom and top (n) [m]; slips, then relative rotations, then openings
       real(wp), intent(in) :: lower(n), upper(n), d(kinds*n)
+      !> Displacements of the bodies in the order of the unknowns, all set here
       real(wp), intent(inout) :: x(kinds*n)
+      !> Displacement of the top of the body below, and rotation of the body; displacement along the column
       real(wp) :: top, rotation, height
       integer :: i
 
@@ -72,11 +79,15 @@ contains
       end do
    end subroutine displacements
 
-   !> Forces conjugate to the deformations of the joints, B'^-1 g, from those on the bodies, from the top
-   !> down.
+   !> Forces of the joints, conjugate to their deformations, that balance forces on the bodies: B'^-1 g, from
+   !> the top down.
    pure subroutine joint_forces(n, kinds, lower, upper, g, f)
+      !> Number of bodies; kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: n, kinds
+      !> Distances from the centroids to bottom and top (n) [m]; forces on the bodies in the order of the
+      !> unknowns
       real(wp), intent(in) :: lower(n), upper(n), g(kinds*n)
+      !> Shear forces, then moments, then axial forces (n each) [N, N m, N]
       real(wp), intent(out) :: f(kinds*n)
       real(wp) :: force, moment
       integer :: i
@@ -97,18 +108,23 @@ contains
       end do
    end subroutine joint_forces
 
-   !> Second-order forces of axial forces, those of the potential -sum a_k th_k^2/2 - sum b_k u_k th_{k-1}: on
-   !> the joints their part in u, on the bodies that in th. Power and stiffness follow from them.
+   !> Second-order forces of axial forces, from their potential U = -sum a_k th_k^2/2 - sum b_k u_k th_{k-1}
+   !> in slips u and absolute rotations th: dU/du adds to the forces of the joints, -dU/dth are moments on the
+   !> bodies.
    pure subroutine second_order_forces(n, axial, d, shear, step, moment)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
-      !> a, axial forces times lengths [N m], then b [N]; compression positive (2 n)
+      !> a_k, axial force times length of body k [N m], then b_k, axial force across the slip of joint k [N];
+      !> compression positive (2 n)
       real(wp), intent(in) :: axial(2*n)
       !> Slips [m] and relative rotations [rad] of the joints (2 n)
       real(wp), intent(in) :: d(2*n)
-      !> Forces of the joints (n) [N], to which their share is added
+      !> Shear forces of the joints (n) [N], to which dU/du is added
       real(wp), intent(inout) :: shear(n)
-      !> Moments on the bodies, at every so many places (step n) [N m]
+      !> Distance between moments of neighbours in their array: 1 if it holds moments alone, 2 if it holds
+      !> force and moment of each body in turn
       integer, intent(in) :: step
+      !> Moments on the bodies, set here; what stands between them is left alone (step n) [N m]
       real(wp), intent(inout) :: moment(step*n)
       real(wp) :: rotation
       integer :: i
@@ -123,25 +139,31 @@ contains
       moment(step*n) = axial(n)*(rotation + d(2*n))
    end subroutine second_order_forces
 
-   !> Geometric stiffness times deformations: the same forces on slips and relative rotations of the joints.
+   !> Geometric stiffness times deformations: the derivatives of the potential U of `second_order_forces` by
+   !> slips and relative rotations of the joints.
    pure subroutine geometric_forces(n, axial, d, g)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
+      !> a and b of that potential, compression positive [N m, N]; slips and relative rotations [m, rad] (2 n)
       real(wp), intent(in) :: axial(2*n), d(2*n)
-      !> (2 n) [N, N m]
+      !> Forces of the slips, then moments of the relative rotations (2 n) [N, N m]
       real(wp), intent(out) :: g(2*n)
       integer :: i
 
       g(:n) = 0.0_wp
       call second_order_forces(n, axial, d, g, 1, g(n + 1:))
+      ! A relative rotation turns all bodies above its joint: its moment is their sum, with the sign of dU.
       g(2*n) = -g(2*n)
       do i = 2*n - 1, n + 1, -1
          g(i) = g(i + 1) - g(i)
       end do
    end subroutine geometric_forces
 
-   !> That potential [J].
+   !> The potential U of axial forces in `second_order_forces` [J].
    pure real(wp) function second_order_energy(n, axial, d) result(energy)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
+      !> a and b of that potential, compression positive [N m, N]; slips and relative rotations [m, rad] (2 n)
       real(wp), intent(in) :: axial(2*n), d(2*n)
       real(wp) :: rotation, below
       integer :: i
@@ -155,15 +177,17 @@ contains
       end do
    end function second_order_energy
 
-   !> Add B' diag(k) B of the springs.
+   !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
    pure subroutine add_joint_stiffness(n, kinds, lower, upper, k, band)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
       !> Kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: kinds
+      !> Distances from the centroids to bottom and top of the bodies (n) [m]
       real(wp), intent(in) :: lower(n), upper(n)
-      !> Stiffness of the joints [N/m, N m, N/m]
+      !> Stiffness of the joints against slip, relative rotation and opening (n each) [N/m, N m, N/m]
       real(wp), intent(in) :: k(kinds*n)
-      !> Lower band
+      !> Lower band of all unknowns, to which it is added
       real(wp), intent(inout) :: band(4, kinds*n)
       real(wp) :: shear, flexure, low, up
       integer :: i, t
@@ -178,6 +202,7 @@ contains
          band(2, t - 1) = band(2, t - 1) - shear*low
          band(1, t) = band(1, t) + shear*low**2 + flexure
          if (i == 1) cycle
+         ! Here i > 1; compilers that do not see it would warn of upper(0).
          up = upper(max(i - 1, 1))
          band(1, t - 3) = band(1, t - 3) + shear
          band(2, t - 3) = band(2, t - 3) + shear*up
@@ -196,11 +221,14 @@ contains
       end do
    end subroutine add_joint_stiffness
 
-   !> Add the second derivatives of the potential of the axial forces, see `second_order_forces`.
+   !> Add the geometric stiffness, the second derivatives of the potential of `second_order_forces` by the
+   !> displacements and rotations of the bodies, to a lower band, band(1 + i - j, j) = a(i, j).
    pure subroutine add_axial_stiffness(n, lower, upper, axial, band)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
+      !> Distances from the centroids to bottom and top (n) [m]; a and b of that potential (2 n) [N m, N]
       real(wp), intent(in) :: lower(n), upper(n), axial(2*n)
-      !> Lower band
+      !> Lower band of slips and rotations, to which it is added
       real(wp), intent(inout) :: band(4, 2*n)
       real(wp) :: force
       integer :: i, t

@@ -74,11 +74,11 @@ contains
       end do
    end subroutine paper_mass
 
-   !> Second derivatives of the potential of the axial forces, to second order, in (slip, relative rotation [,
-   !> opening]).
+   !> Second derivatives of the potential of the axial forces at the straight column, in (slip, relative
+   !> rotation [, opening]); column j of the matrix is the forces of a unit deformation j.
    subroutine geometric_stiffness(column, stiffness)
       class(column_type), intent(in) :: column
-      !> Matrix (2 n or unknowns, as many) [N/m, N, N m]
+      !> Square matrix of 2 n, or of all unknowns, where openings have zeros [N/m, N, N m]
       real(wp), intent(out) :: stiffness(:, :)
       real(wp) :: unit(2*column%n), g(2*column%n)
       integer :: j, m
@@ -89,7 +89,7 @@ contains
       do j = 1, m
          unit(j) = 1.0_wp
          call geometric_forces(column%n, column%second_order, unit, g)
-         ! No negative zeros
+         ! Adding zero turns negative zeros, which matrices would show, into positive ones.
          stiffness(:m, j) = g + 0.0_wp
          unit(j) = 0.0_wp
       end do

@@ -101,10 +101,12 @@ contains
    !> Put the column under a constant axial load at its top and the weight of its bodies.
    subroutine put_under(self, load)
       class(column_type), intent(inout) :: self
+      !> Compression positive [N]
       real(wp), intent(in) :: load
       real(wp) :: above(self%n + 1), dead
       integer :: i
 
+      ! A load at a lower height has the second-order work of a smaller one at the top.
       dead = load*self%axial_lever
       above(self%n + 1) = 0.0_wp
       do i = self%n, 1, -1
@@ -113,6 +115,7 @@ contains
       self%axial_load = load
       self%axial_body = dead + (0.5_wp*self%weight + above(2:))
       self%axial_joint = dead + above(:self%n)
+      ! The joint of a held top slips along a fixed direction.
       self%axial_slip = self%axial_joint
       if (self%held) self%axial_slip(self%n) = 0.0_wp
       self%second_order = [self%axial_body*self%length, self%axial_slip]
@@ -121,17 +124,20 @@ contains
       self%compression = load + above(:self%n)
       self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
       self%in_series = .not. (self%axially_loaded .or. self%held)
-      ! Layered joints and axial springs carry the axial load of load and weight above them.
+      ! Flexural springs, of layered joints too, and axial springs carry the load and the weight above them.
       do i = self%n + 1, self%unknowns
          self%constant_axial(i) = self%compression(self%location(i)%index)
       end do
    end subroutine put_under
 
-   !> Changes of the deformations of the joints from those of the bodies.
+   !> Changes of the deformations of the joints from those of the bodies; a chain does not use `tangent`.
    subroutine spring_rates(self, tangent, dx, dd)
       class(column_type), intent(in) :: self
+      !> Parts between the unknowns, of which a chain has none
       type(series_tangent), intent(in) :: tangent(:)
+      !> Displacements of the bodies, or rates of them (unknowns)
       real(wp), intent(in), contiguous :: dx(:)
+      !> Deformations by kind: slips, relative rotations, openings (springs)
       real(wp), intent(out), contiguous :: dd(:)
 
       call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
@@ -140,23 +146,31 @@ contains
    !> Changes of the displacements of the bodies from those of the joints.
    pure subroutine unknown_rates(self, dd, dx)
       class(column_type), intent(in) :: self
+      !> Deformations by kind: slips, relative rotations, openings, or rates of them (springs)
       real(wp), intent(in), contiguous :: dd(:)
+      !> Displacements of the bodies (unknowns)
       real(wp), intent(out), contiguous :: dx(:)
 
       call displacements(self%n, self%kinds, self%lower, self%upper, dd, dx)
       if (self%held) dx(2*self%n) = 0.0_wp
    end subroutine unknown_rates
 
-   !> Forces on the bodies, without the inertia of the moving ground.
+   !> Forces of springs, loads and axial forces on the bodies, without the inertia of the moving ground. A
+   !> chain uses neither `tangent` nor `correction` nor `dead`, which are for frames.
    subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
       class(column_type), intent(in) :: self
+      !> Deformations of the springs (springs) [m, rad], signals of the loads (signals), and what
+      !> `axial_forces` gives (2 n), or nothing where axial forces do no second-order work
       real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
       type(series_tangent), intent(in) :: tangent(:)
+      !> Forces of the springs; those of slips get the second-order share of the axial forces [N, N m]
       real(wp), intent(inout), contiguous :: f(:)
+      !> Forces on the bodies, displacement and rotation of each in turn, then openings (unknowns) [N, N m]
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
       real(wp), intent(in), optional :: dead
 
+      ! Step 2: moments are every second number of g. `body_forces` adds to them.
       if (size(axial) > 0) call second_order_forces(self%n, axial, d, f, 2, g)
       call body_forces(self%n, self%kinds, self%lower, self%upper, f, load(lateral), &
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
@@ -164,16 +178,19 @@ contains
 
    !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
    pure subroutine body_forces(n, kinds, lower, upper, f, lateral, axial_load, weight, adds, g)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
       !> Kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: kinds
+      !> Distances of the centroids from bottom and top of the bodies (n) [m]
       real(wp), intent(in) :: lower(n), upper(n)
       !> Shear forces [N], moments [N m] and axial forces, tension positive [N], of the joints
       real(wp), intent(in) :: f(kinds*n)
-      !> Loads at the top, compression positive, and weight of the bodies [N]
+      !> Lateral force at the top to +x, axial load there, compression positive, and weight of the bodies [N]
       real(wp), intent(in) :: lateral, axial_load, weight(n)
-      !> Whether the moments are added to those that are there (2 n or 3 n)
+      !> Whether g holds second-order moments, to which the others are added
       logical, intent(in) :: adds
+      !> Force and moment of each body in turn, then forces along the column (2 n or 3 n)
       real(wp), intent(inout) :: g(kinds*n)
       real(wp) :: moment
       integer :: i
@@ -195,20 +212,24 @@ contains
       g(3*n) = -axial_load - f(3*n) - weight(n)
    end subroutine body_forces
 
-   !> Axial forces for the rotations of the bodies, times their lengths, then across the slips of the joints
-   !> (2 n), see `second_order_forces`.
+   !> Axial forces that do second-order work under loads and constant ones, compression positive: those for
+   !> the rotations of the bodies, times their lengths [N m], then those across the slips of the joints [N].
    subroutine axial_forces(self, load, axial)
       class(column_type), intent(in) :: self
+      !> Signals of the loads (signals)
       real(wp), intent(in), contiguous :: load(:)
+      !> (2 n)
       real(wp), intent(out), contiguous :: axial(:)
 
       axial = self%second_order + added_axial(self, load)
    end subroutine axial_forces
 
-   !> The same of the loads that are added to the constant ones.
+   !> The share in `axial_forces` of changes of the axial load and of vertical accelerations of the ground.
    pure function added_axial(self, load) result(axial)
       class(column_type), intent(in) :: self
+      !> Signals of the loads (signals)
       real(wp), intent(in) :: load(:)
+      !> (2 n) [N m, N]
       real(wp) :: axial(2*self%n)
 
       associate (top => load(top_axial)*self%axial_lever)
@@ -217,42 +238,51 @@ contains
       if (self%held) axial(2*self%n) = 0.0_wp
    end function added_axial
 
-   !> Axial force at a spring under loads [N].
+   !> Axial force at a spring, constant one and that of the loads, compression positive [N].
    pure real(wp) function axial_force(self, spring, load)
       class(column_type), intent(in) :: self
+      !> Number of the spring; signals of the loads (signals)
       integer, intent(in) :: spring
+      !> (signals) [N, m/s2, m/s2, N, m/s2]
       real(wp), intent(in) :: load(:)
 
       axial_force = self%constant_axial(spring) + load(top_axial) &
                     + load(vertical)*self%lifted_joint(self%location(spring)%index)
    end function axial_force
 
-   !> Add B' diag(k) B.
+   !> Add B' diag(k) B of the springs to a lower band; a chain does not use `tangent`.
    subroutine add_stiffness(self, k, tangent, band)
       class(column_type), intent(in) :: self
+      !> Stiffness of the springs by kind: slips, relative rotations, openings (springs)
       real(wp), intent(in), contiguous :: k(:)
       type(series_tangent), intent(in) :: tangent(:)
+      !> (4, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
 
       call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
    end subroutine add_stiffness
 
-   !> Add the geometric stiffness.
+   !> Add the geometric stiffness of axial forces to a lower band.
    subroutine add_geometric(self, k, band)
       class(column_type), intent(in) :: self
+      !> What `axial_forces` gives (2 n)
       real(wp), intent(in), contiguous :: k(:)
+      !> (4, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
 
       call add_axial_stiffness(self%n, self%lower, self%upper, k, band)
    end subroutine add_geometric
 
-   !> Accelerations of the joints, where the rotations are small.
+   !> Accelerations of the joints, relative to the ground, where the rotations are small.
    subroutine accelerations(self, d, v, load, pressing, result)
       class(column_type), intent(in) :: self
+      !> Deformations of the springs and their velocities (springs), signals of the loads
       real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
+      !> Number of axial forces that do second-order work: 2 n, or 0 where none does
       integer, intent(in) :: pressing
-      !> Its work array: second-order moments on the bodies, which stay zero where there are none, and
-      !> accelerations of the bodies, along x and in rotation (n each)
+      !> It holds the forces of the springs and gets accelerations. Its work array: second-order moments on
+      !> the bodies, which stay zero where there are none, and accelerations of the bodies, along x and in
+      !> rotation (n each)
       type(motion_result), intent(inout) :: result
       integer :: n
 
@@ -265,22 +295,27 @@ contains
       call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, result%f, &
                                result%work, load(lateral), load(horizontal), result%work(n + 1), &
                                result%work(2*n + 1), result%a)
+      ! Acceleration of the top; change of the momentum along x, with its sign turned, from the forces on the
+      ! chain.
       result%of_speeds(lateral) = result%work(2*n) + self%upper(n)*result%work(3*n)
       result%of_speeds(horizontal) = -(load(lateral) - result%f(1) - self%mass_above(1)*load(horizontal))
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerations
 
-   !> Accelerations of the joints at once, B M^-1 (p - B' f), where joints do not open.
+   !> Accelerations of the joints at once, B M^-1 (p - B' f), where joints do not open [m/s2, rad/s2].
    pure subroutine chain_accelerations(n, lower, upper, inverse_mass, inverse_inertia, f, moment, lateral, &
                                        ground, along, turning, a)
+      !> Number of bodies, and of joints
       integer, intent(in) :: n
+      !> Distances of the centroids from bottom and top of the bodies (n) [m]
       real(wp), intent(in) :: lower(n), upper(n)
       !> One over mass and rotary inertia of the bodies, forces of the joints, and second-order
       !> moments on the bodies
       real(wp), intent(in) :: inverse_mass(n), inverse_inertia(n), f(2*n), moment(n)
       !> Force at the top [N] and acceleration of the ground [m/s2]
       real(wp), intent(in) :: lateral, ground
-      !> Accelerations of the bodies relative to the ground, along x and in rotation, and of the joints
+      !> Accelerations of the bodies relative to the ground, along x and in rotation; of slips, then rotations
+      !> of the joints
       real(wp), intent(out) :: along(n), turning(n), a(2*n)
       integer :: i
 
@@ -302,18 +337,21 @@ contains
    !> Power of the loads, and of their share of the axial forces that do second-order work [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)
       class(column_type), intent(in) :: self
+      !> Deformations of the springs and their velocities (springs), signals of the loads
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
       real(wp) :: g(2*self%n)
 
       watt = power_of_patterns(self, d, v, load)
+      ! A change of the axial load, or a vertical acceleration, does second-order work too.
       if (self%kinematics == small .or. .not. any(abs(load(vertical:)) > 0.0_wp)) return
       call geometric_forces(self%n, added_axial(self, load), d, g)
       watt = watt - inner_product(2*self%n, v, g)
    end function power_of_loads
 
-   !> Potential of the constant axial load and the weight, on rotations and openings.
+   !> Potential of the constant axial load and the weight, on rotations and openings [J].
    pure real(wp) function potential_energy(self, d) result(energy)
       class(column_type), intent(in) :: self
+      !> Deformations by kind: slips, relative rotations, openings (springs)
       real(wp), intent(in), contiguous :: d(:)
 
       energy = 0.0_wp
@@ -324,17 +362,21 @@ contains
    !> Height of the top above the ground, to second order [m]: the way on which the axial load does its work.
    pure real(wp) function top_height(self, d) result(y)
       class(column_type), intent(in) :: self
+      !> Deformations by kind: slips, relative rotations, openings (springs)
       real(wp), intent(in), contiguous :: d(:)
 
       y = self%joint_height(self%n + 1)
+      ! The potential of an axial force of one is the height that the top has lost, with its sign turned.
       if (self%kinematics /= small) y = y + second_order_energy(self%n, self%unit_axial, d)
       if (self%opens) y = y + sum(d(2*self%n + 1:))
    end function top_height
 
-   !> Rotations of the bodies from those of the joints.
+   !> Absolute rotations of the bodies, the sums of the relative ones of the joints below them.
    pure subroutine rotations(self, d, rotation)
       class(column_type), intent(in) :: self
+      !> Deformations by kind: slips, relative rotations, openings (springs)
       real(wp), intent(in), contiguous :: d(:)
+      !> (n) [rad]
       real(wp), intent(out), contiguous :: rotation(:)
       real(wp) :: turned
       integer :: i
@@ -346,9 +388,10 @@ contains
       end do
    end subroutine rotations
 
-   !> Angular momentum about the lowest joint [kg m2/s].
+   !> Angular momentum about the lowest joint, in the straight column [kg m2/s].
    pure real(wp) function angular_momentum(self, d, v) result(momentum)
       class(column_type), intent(in) :: self
+      !> Deformations, of which only the number counts here, and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
       !> Rates: of the rotation of a body, and along x of its top and its centroid
       real(wp) :: rotation, top, centroid
@@ -367,12 +410,15 @@ contains
       end do
    end function angular_momentum
 
-   !> The acceleration of a spring by the largest forces alone, with which a computed one is compared.
+   !> The acceleration of a spring by the largest forces alone, with which a computed one is compared, in
+   !> m/s2 or, of a flexural spring, in rad/s2.
    pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
       class(column_type), intent(in) :: self
+      !> Number of the spring, and all of them; signals of the loads (signals)
       integer, intent(in) :: spring
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: load(:)
+      !> Largest force and largest moment, then accelerations; length of the longest body
       real(wp) :: along, about, reach
       logical :: upright
       integer :: j
@@ -396,9 +442,11 @@ contains
       scale = merge(about, along, self%location(spring)%kind == flexure)
    end function acceleration_scale
 
-   !> Refuse axial loads and vertical motions that do nothing.
+   !> Refuse axial loads and vertical motions that do nothing, and motions along y, which a column does not
+   !> have.
    subroutine check_loads(self, acts, error)
       class(column_type), intent(in) :: self
+      !> Which loads act (signals)
       logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(inout) :: error
 
@@ -419,9 +467,10 @@ contains
       end if
    end subroutine check_loads
 
-   !> Refuse an initial state in which a fixed top is turned, or turns.
+   !> Refuse initial deformations, or velocities, in which a fixed top is turned, or turns.
    subroutine check_initial(self, name, value, error)
       class(column_type), intent(in) :: self
+      !> Name of the values, for the message; the values (springs)
       character(len=*), intent(in) :: name
       real(wp), intent(in), contiguous :: value(:)
       type(error_type), allocatable, intent(inout) :: error
@@ -452,18 +501,20 @@ contains
       end if
    end subroutine check_inertia
 
-   !> Dynamic stiffness before any spring yields, in parts that nothing couples: of slips and rotations, and
-   !> of openings where joints open.
+   !> Dynamic stiffness before any spring yields, in parts that nothing couples: slips and rotations are the
+   !> first, openings the second, where joints open.
    subroutine dynamic_parts(self, axial, part)
       class(column_type), intent(in) :: self
       !> Whether the axial forces do second-order work
       logical, intent(in) :: axial
+      !> One part, or two where joints open
       class(dynamic_stiffness), allocatable, intent(out) :: part(:)
       type(sturm_chain), allocatable :: chain(:)
       real(wp) :: none(2*self%n)
 
       none = 0.0_wp
       allocate (chain(merge(2, 1, self%opens)))
+      ! Openings are a chain whose bodies do not turn: any stiffness against rotation does, as 1.
       associate (n => self%n, k => self%initial_stiffness)
          chain(1) = sturm_chain_of(k(:n), k(n + 1:2*n), self%mass, self%inertia, self%lower, self%upper, &
                                    merge(self%second_order, none, axial), self%held)
@@ -473,11 +524,15 @@ contains
       call move_alloc(chain, part)
    end subroutine dynamic_parts
 
-   !> The top moves to +x, or up if it moves along the column only.
+   !> Put a shape of vibration into the order of the springs, with its sign: the top moves to +x, or up if it
+   !> moves along the column only.
    subroutine set_shape(self, part, found, shape)
       class(column_type), intent(in) :: self
+      !> Number of the part, of `dynamic_parts`: 2 is that of the openings
       integer, intent(in) :: part
+      !> Translation and rotation of each joint in turn (2 n)
       real(wp), intent(in), contiguous :: found(:)
+      !> (springs), zero on entry
       real(wp), intent(inout), contiguous :: shape(:)
       real(wp) :: along
 
@@ -492,26 +547,32 @@ contains
       shape = sign(1.0_wp, along)*shape
    end subroutine set_shape
 
-   !> Where a spring without stiffness moves alone, the force rates of all others are round-off.
+   !> Take rates that are round-off for zero: where a spring without stiffness moves alone, the force rates of
+   !> all others are round-off of its motion. `tangent` and `dx` are not used.
    pure subroutine clear_round_off(self, tangent, dx, k, dd)
       class(column_type), intent(in) :: self
       type(series_tangent), intent(in) :: tangent(:)
+      !> Rates of the unknowns (unknowns); present stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: dx(:), k(:)
+      !> Rates of the deformations (springs)
       real(wp), intent(inout), contiguous :: dd(:)
       real(wp) :: lever(self%moving), largest
 
       associate (m => self%moving)
          if (all(abs(k(:m)) > 0.0_wp)) return
+         ! A moment over the height is compared with forces.
          lever = merge(self%total_height, 1.0_wp, self%location(:m)%kind == flexure)
          largest = maxval(self%initial_stiffness(:m)*abs(dd(:m))/lever, mask=.not. abs(k(:m)) > 0.0_wp)
          where (abs(k(:m)) > 0.0_wp .and. abs(k(:m)*dd(:m))/lever < round_off*largest) dd(:m) = 0.0_wp
       end associate
    end subroutine clear_round_off
 
-   !> Momenta of a motion of the joints, conjugate to it.
+   !> Momenta of a motion of the joints, conjugate to its deformations.
    pure subroutine momenta(self, shape, momentum)
       class(column_type), intent(in) :: self
+      !> Deformations by kind (springs)
       real(wp), intent(in), contiguous :: shape(:)
+      !> (springs) [kg m, kg m2 times the unit of the motion]
       real(wp), intent(out), contiguous :: momentum(:)
       real(wp) :: x(self%unknowns)
 
@@ -519,13 +580,15 @@ contains
       call joint_forces(self%n, self%kinds, self%lower, self%upper, self%inertias*x, momentum)
    end subroutine momenta
 
-   !> What a row of a response holds.
+   !> Channels of a column in a row, from `column_channel`: those that the run asks for and the column has.
    pure subroutine channels(self, contents, channel)
       class(column_type), intent(in) :: self
+      !> What the run asks for
       type(row_contents), intent(in) :: contents
       type(channel_type), allocatable, intent(out) :: channel(:)
       logical :: held(size(column_channel))
 
+      ! Numbers are places in `column_channel`.
       held = .true.
       held([4, 7]) = self%opens
       held(8:9) = contents%in_time .and. self%damped
@@ -537,14 +600,18 @@ contains
       channel = pack(channel, held)
    end subroutine channels
 
-   !> Fill a row of a response.
+   !> Fill a row of a response with the values of `channels`, one after the other.
    pure subroutine fill_row(self, contents, response, springs, d, row)
       class(column_type), intent(in) :: self
+      !> What the run asks for; response in time, and springs at the begin of their lines
       type(row_contents), intent(in) :: contents
       type(response_type), intent(in) :: response
       type(spring_array), intent(in) :: springs
+      !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
+      !> Values of `channels` without those of all structures
       real(wp), intent(out), contiguous :: row(:)
+      ! m springs, n joints; place of the last value that is filled
       integer :: at, i, m, n
 
       m = size(d)
@@ -552,6 +619,7 @@ contains
       row(1) = self%top_height(d)
       do i = 1, m
          row(1 + i) = d(i)
+         ! Forces on the line that a spring is on, from its begin (d0, f0)
          row(1 + m + i) = springs%f0(i) + springs%k(i)*(d(i) - springs%d0(i))
       end do
       at = 2*m + 1
@@ -559,6 +627,7 @@ contains
          if (self%damped) then
             row(at + 1) = response%base_shear
             row(at + 2) = response%f(n + 1)
+            ! Damping of the masses acts against the ground too, with its moment about the base.
             if (self%mass_damping > 0.0_wp) then
                row(at + 2) = row(at + 2) + self%mass_damping*self%angular_momentum(d, response%v)
             end if
@@ -577,9 +646,10 @@ contains
       end do
    end subroutine fill_row
 
-   !> The largest rotation of a body.
+   !> The largest absolute rotation of a body, in size [rad].
    pure real(wp) function largest_rotation(self, d) result(largest)
       class(column_type), intent(in) :: self
+      !> Deformations of the springs, or changes of them (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: rotation
       integer :: i

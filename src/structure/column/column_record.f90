@@ -23,8 +23,8 @@ module rbs_structure_column_column_record
    !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
    integer, parameter :: most_bodies = 10000
 
-   !> Modal damping and all modes at once take seconds with this number of bodies and
-   !> grows with its cube.
+   !> Modal damping, and all modes at once, take seconds with this number of bodies, a time that grows with
+   !> its cube.
    integer, parameter :: most_dense = 500
 
    !> A column that takes modal damping has no more modes, head and footing included.
@@ -59,20 +59,23 @@ module rbs_structure_column_column_record
       !> At the top, compression positive [N]; how it follows the lateral force on a static path: N =
       !> axial_load + axial_force_ratio F
       real(wp) :: axial_load = 0.0_wp, axial_force_ratio = 0.0_wp
-      !> Height at which it acts [m]; `unset`: at the top
+      !> Height at which the axial load acts [m]; `unset`: at the top
       real(wp) :: axial_height = unset
+      !> Whether the weight of the bodies acts, and acceleration of gravity [m/s2]; mass [kg] and rotary
+      !> inertia [kg m2] lumped at the top
       logical :: self_weight = .false.
       real(wp) :: gravity = standard_gravity
       real(wp) :: top_mass = 0.0_wp, top_inertia = 0.0_wp
       !> 'free', or 'fixed' against rotation
       character(len=16) :: top = 'free'
-      !> Whether there is a footing, that is, whether springs are given for joint 0; mass [kg],
-      !> rotary inertia about its centroid [kg m2] and height [m] of the footing
+      !> Whether there is a footing, that is, whether springs are given for joint 0
       logical :: footing = .false.
       !> Whether its springs, but for those beneath a footing, and its mass are made of its section by Python
       logical :: drawn = .false.
+      !> Mass [kg], rotary inertia about the centroid [kg m2] and height [m] of the footing; depth of the
+      !> section [m]
       real(wp) :: footing_mass = 0.0_wp, footing_inertia = 0.0_wp, footing_height = 0.0_wp, depth = 0.0_wp
-      !> One for all bodies or n; not allocated: m (l^2 + depth^2)/12 [kg m2]
+      !> Rotary inertia of the bodies, one for all or n; not allocated: m (l^2 + depth^2)/12 [kg m2]
       real(wp), allocatable :: rotary_inertia(:)
       !> Which model made the column, and the version of its parameters; for the record only
       character(len=64) :: model = ''
@@ -147,7 +150,7 @@ contains
    pure integer function joints(self)
       class(column_record), intent(in) :: self
 
-      ! More bodies are refused, and have no joints that are counted or placed before.
+      ! `validate` refuses more bodies; before that no more joints are counted or placed.
       joints = min(self%n, most_bodies) + merge(1, 0, self%top == 'fixed') + merge(1, 0, self%footing)
    end function joints
 
@@ -191,7 +194,7 @@ contains
 
    contains
 
-      !> A lever of the axial load is known to the second-order moments of joints that do not open.
+      !> Refuse a height of the axial load where it has no effect: it acts by second-order moments alone.
       subroutine check_axial_height()
 
          if (.not. ieee_is_finite(self%axial_height)) return
@@ -207,7 +210,7 @@ contains
          end if
       end subroutine check_axial_height
 
-      !> Two statements on rotary inertia contradict each other.
+      !> Refuse two statements on rotary inertia, and a number of values that is neither 1 nor n.
       subroutine check_inertia()
          logical :: given
 
@@ -223,7 +226,8 @@ contains
          end if
       end subroutine check_inertia
 
-      !> Damping that has something to act on, and matrices that can be handled.
+      !> Refuse tangent damping without stiffness damping, more damping ratios than modes, and modal damping
+      !> of too many bodies.
       subroutine check_damping()
          integer :: modes
          logical :: given
@@ -234,6 +238,7 @@ contains
             call messages%add('damping: tangent has no meaning without stiffness; give one')
          end if
          if (.not. allocated(self%damping%modal)) return
+         ! Each joint has two or three unknowns; the top that is held does not turn.
          modes = merge(3, 2, allocated(self%axial_spring))*self%joints() - merge(1, 0, self%top == 'fixed')
          if (size(self%damping%modal) > modes) then
             call messages%add('damping: modal has '//to_text(size(self%damping%modal))//' values for '// &
@@ -248,6 +253,7 @@ contains
 
       !> Lengths and masses: one for each body.
       subroutine check_count(name, count, n)
+         !> Key, number of its values, number of bodies
          character(len=*), intent(in) :: name
          integer, intent(in) :: count, n
 
@@ -256,6 +262,7 @@ contains
                            ' bodies; give one for each')
       end subroutine check_count
 
+      !> Refuse lengths that do not add up to the height.
       subroutine check_sum()
          real(wp) :: total
 
@@ -268,13 +275,14 @@ contains
          end if
       end subroutine check_sum
 
-      !> Check the springs of one direction.
+      !> Check the springs of one direction: their number, and each of them.
       subroutine check_springs(springs, name, place)
          type(spring_record), intent(in), allocatable :: springs(:)
-         !> For messages: 'shear'; their place, see `rbs_hysteresis_rule`
+         !> Word of messages, as 'shear'; place of the springs: `in_shear`, `in_flexure` or `in_axial`
          character(len=*), intent(in) :: name, place
          integer :: i
 
+         ! Of a drawn column only the springs beneath a footing are given; Python makes the others.
          if (self%drawn) then
             if (allocated(springs)) call check_spring(springs(1), name//' spring of joint 0', name, place)
          else if (.not. allocated(springs)) then
@@ -296,13 +304,16 @@ contains
          end if
       end subroutine check_springs
 
+      !> Check the values of a spring, and that its rule may be used in its place.
       subroutine check_spring(spring, full_name, name, place)
          type(spring_record), intent(in) :: spring
+         !> The spring and its joint, for messages; direction, for messages, and place
          character(len=*), intent(in) :: full_name, name, place
          character(len=:), allocatable :: from
 
          call spring%where_given(from)
          call spring%validate(from//full_name, messages)
+         ! An unknown rule has its message from the spring.
          if (suits(spring%rule, place) .or. .not. any(rule_names == spring%rule)) return
          call messages%add(from//'column: the '//name//" spring cannot be of the rule '"// &
                            trim(spring%rule)//"'; it is one of "// &

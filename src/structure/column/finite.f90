@@ -56,8 +56,11 @@ contains
    !> it takes alpha q' from the accelerations.
    subroutine accelerations(self, d, v, load, pressing, result)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind and their velocities, signals of the loads
       real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
+      !> Number of axial forces that do second-order work beside the equations: 0, as exact rotations hold it
       integer, intent(in) :: pressing
+      !> It holds the forces of the springs and gets the accelerations
       type(motion_result), intent(inout) :: result
 
       if (pressing == 0 .and. size(d) == 2) then
@@ -68,11 +71,15 @@ contains
       end if
    end subroutine accelerations
 
-   !> The same for any chain; it leaves the axial forces of joints that do not open in the work array (n).
+   !> Accelerations of any chain by its bodies; it leaves the axial forces of joints that do not open in the
+   !> work array (n).
    subroutine accelerate(self, d, v, f, load, work, a)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind, their velocities and forces (springs), signals of the loads
       real(wp), intent(in), contiguous :: d(:), v(:), f(:), load(:)
+      !> Five numbers for each joint, see `reaction` and the others at the head of the module
       real(wp), intent(inout), contiguous :: work(:)
+      !> Of the deformations, relative to the ground (springs)
       real(wp), intent(out), contiguous :: a(:)
 
       call accelerate_under_forces(self, d, v, f, load, work, a)
@@ -87,6 +94,7 @@ contains
    !>     m s cos(th) u'' + (I + m s^2) th'' + M = (F l - m s a_g) cos(th) + P l sin(th)
    pure subroutine accelerate_one_body(self, d, v, f, load, a, power)
       class(finite_chain_type), intent(in) :: self
+      !> Slip and rotation, their velocities, forces of the two springs, signals of the loads
       real(wp), intent(in) :: d(2), v(2), f(2), load(signals)
       !> Accelerations; power of the loads [W]
       real(wp), intent(out) :: a(2), power
@@ -112,15 +120,18 @@ contains
       end associate
    end subroutine accelerate_one_body
 
-   !> Accelerations under the known forces. If the joints do not open the axial forces are not known: they
-   !> are left out, and the equations are set up by which the accelerations w'' vanish,
-   !> w''(N) = w''(0) - G N = 0; the reactions in `work` are then w''(0).
+   !> Accelerations under the known forces. If the joints do not open, their axial forces N are not known:
+   !> they are left out, and the equations are set up by which the accelerations w'' of the openings vanish,
+   !> w''(N) = w''(0) - G N = 0; `work` then holds w''(0) in place of the reactions, and the matrix G.
    subroutine accelerate_under_forces(column, q, v, f, load, work, a)
       class(finite_chain_type), intent(in) :: column
       !> Unknowns, their velocities, and the forces of the joints conjugate to them, springs and damping
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds), f(column%n, column%kinds)
+      !> Signals of the loads
       real(wp), intent(in) :: load(signals)
+      !> Columns as at the head of the module: `reaction`, `sine` and so on
       real(wp), intent(inout) :: work(column%n, 5)
+      !> Of the unknowns, relative to the ground, without mass damping
       real(wp), intent(out) :: a(column%n, column%kinds)
       !> Joint below and above the body: forces, slip and opening
       real(wp) :: transverse, tension, moment, slip, opening
@@ -240,13 +251,16 @@ contains
       end do
    end subroutine accelerate_under_forces
 
-   !> Force at the top along x and y [N]. The weight of all masses is in the field of acceleration; that of
-   !> the lumped mass belongs to the axial load and is taken away again.
+   !> Force at the top along x and y [N]. The weight of all masses is in the field of acceleration, but that
+   !> of the lumped mass belongs to the axial load and is taken away again: `mass` holds the lumped mass,
+   !> `weight` does not.
    pure subroutine find_top_force(self, load, constant, force)
       class(finite_chain_type), intent(in) :: self
+      !> Signals of the loads
       real(wp), intent(in) :: load(:)
       !> Whether loads that have a potential count too
       logical, intent(in) :: constant
+      !> Along x and upward [N]
       real(wp), intent(out) :: force(2)
 
       force = [load(lateral), -load(top_axial)]
@@ -254,11 +268,16 @@ contains
       force(2) = -(self%weight(self%n) - self%gravity*self%mass(self%n)) - (load(top_axial) + self%axial_load)
    end subroutine find_top_force
 
-   !> Find the reactions of joints that do not open, and add the accelerations that they cause.
+   !> Find the reactions of joints that do not open, from G N = w''(0), and add the accelerations that they
+   !> cause.
    subroutine add_reactions(column, q, work, a)
       class(finite_chain_type), intent(in) :: column
+      !> Deformations of the joints by kind
       real(wp), intent(in) :: q(column%n, column%kinds)
+      !> In work on entry G and w''(0), on return the reactions N; accelerations, to which theirs are added
       real(wp), intent(inout) :: work(column%n, 5), a(column%n, column%kinds)
+      !> From the reactions: rotational accelerations of a body and of the one below; acceleration of its top
+      !> along its normal; reaction above it
       real(wp) :: spin_rate, spin_rate_below, below, above, along
       logical :: positive
       integer :: i, n
@@ -289,15 +308,17 @@ contains
       end do
    end subroutine add_reactions
 
-   !> The same at the two bodies that the joint of a held top is between. Its reaction acts along the fixed
-   !> vertical, at the top of the body below.
+   !> The same at the two bodies n - 1 and n, which the joint of a held top is between. Its reaction acts
+   !> along the fixed vertical, at the top of the body below.
    pure subroutine add_last_reaction(column, work, i, spin_rate_below, below, a)
       class(finite_chain_type), intent(in) :: column
+      !> Sines, cosines and reactions of the joints
       real(wp), intent(in) :: work(column%n, 5)
       !> n - 1 or n
       integer, intent(in) :: i
       !> Acceleration of the body below in rotation, and of its top along its normal, from the reactions
       real(wp), intent(inout) :: spin_rate_below, below
+      !> Accelerations of the unknowns, to which those by the reactions are added
       real(wp), intent(inout) :: a(column%n, column%kinds)
       real(wp) :: spin_rate, along
       integer :: n
@@ -322,8 +343,11 @@ contains
    !> Go up by one body: rotation and velocities of body i from those of body i - 1.
    pure subroutine climb(column, q, v, i, body)
       class(finite_chain_type), intent(in) :: column
+      !> Deformations of the joints by kind, and their velocities
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
+      !> Number of the body, from the ground up
       integer, intent(in) :: i
+      !> On entry body i - 1, at rest on the ground for i = 1
       type(moving_body), intent(inout) :: body
       real(wp) :: along_t, along_e, bottom(2)
 
@@ -347,11 +371,14 @@ contains
       body%top(2) = bottom(2) - along_t*body%s
    end subroutine climb
 
-   !> Rotation of body i from that of body i - 1.
+   !> Rotation of body i from that of body i - 1; a held top and its joint have fixed directions.
    pure subroutine rotate(column, q, i, body)
       class(finite_chain_type), intent(in) :: column
+      !> Deformations of the joints by kind
       real(wp), intent(in) :: q(column%n, column%kinds)
+      !> Number of the body, from the ground up
       integer, intent(in) :: i
+      !> On entry body i - 1
       type(moving_body), intent(inout) :: body
       real(wp) :: rotation, s, c
 
@@ -365,7 +392,7 @@ contains
       body%s_below = body%s
       body%c_below = body%c
       rotation = body%rotation + q(i, flexure)
-      ! Side by side, so that they are found together; the straight column needs neither.
+      ! Side by side, so that the compiler finds sine and cosine together; the straight column needs neither.
       s = 0.0_wp
       c = 1.0_wp
       if (abs(rotation) > 0.0_wp) then
@@ -377,14 +404,17 @@ contains
       body%c = c
    end subroutine rotate
 
-   !> Position of body i, whose rotation is known, from that of body i - 1: its bottom, and its top.
+   !> Position of body i, whose rotation is known, from that of body i - 1: its bottom and its top (x, y) [m].
    pure subroutine locate(column, q, i, body, bottom, top)
       class(finite_chain_type), intent(in) :: column
+      !> Deformations of the joints by kind
       real(wp), intent(in) :: q(column%n, column%kinds)
+      !> Number of the body, from the ground up
       integer, intent(in) :: i
+      !> Body i, rotated
       type(moving_body), intent(in) :: body
       real(wp), intent(out) :: bottom(2)
-      !> On entry that of body i - 1
+      !> On entry the top of body i - 1
       real(wp), intent(inout) :: top(2)
 
       bottom = top + q(i, shear)*[body%c_below, -body%s_below]
@@ -395,10 +425,12 @@ contains
    !> Kinetic energy relative to the ground [J].
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind, and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
       type(moving_body) :: body
       integer :: i
 
+      ! One body, without openings
       if (size(d) == 2) then
          energy = 0.5_wp*(self%mass(1)*v(1)**2 + self%inertia_above(1)*v(2)**2) &
                   + self%moment_above(1)*cos(d(2))*v(1)*v(2)
@@ -413,11 +445,12 @@ contains
       energy = 0.5_wp*energy
    end function kinetic_energy
 
-   !> Potential of the column's axial load, unless it follows the top, and of the weight; zero for the
-   !> straight closed column [J].
+   !> Potential of the constant axial load and of the weight; zero for the straight closed column [J].
    pure real(wp) function potential_energy(self, d) result(energy)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind (springs)
       real(wp), intent(in), contiguous :: d(:)
+      !> Rotation of a body; sine and cosine of its half; what its length loses in height; rise of its top
       real(wp) :: rotation, half(2), drop, rise, s, c
       integer :: i, n
 
@@ -446,9 +479,10 @@ contains
       energy = energy + self%axial_load*rise
    end function potential_energy
 
-   !> Velocities of the bodies: x and y of the centroids, rotation (3, n).
+   !> Velocities of the bodies relative to the ground: x and y of the centroids, rotation (3, n) [m/s, rad/s].
    pure subroutine body_velocities(self, d, v, velocity)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind, and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
       real(wp), intent(out) :: velocity(:, :)
       type(moving_body) :: body
@@ -460,14 +494,18 @@ contains
       end do
    end subroutine body_velocities
 
-   !> Work of a signal of one per time.
+   !> Velocity conjugate to a signal of the loads: of the top along x for the lateral force [m/s], the
+   !> momentum along x with its sign turned for the acceleration of the ground [kg m/s].
    pure real(wp) function speed(self, signal, d, v)
       class(finite_chain_type), intent(in) :: self
+      !> `lateral` or `horizontal`
       integer, intent(in) :: signal
+      !> Deformations of the joints by kind, and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
       type(moving_body) :: body
       integer :: i
 
+      ! One body, without openings
       if (size(d) == 2) then
          associate (turning => cos(d(2))*v(2))
             speed = v(1) + self%length(1)*turning
@@ -483,9 +521,11 @@ contains
       if (signal == lateral) speed = body%top(1)
    end function speed
 
-   !> Power of the loads that are in no potential: lateral force, ground, additional axial load [W].
+   !> Power of the loads that are in no potential: lateral force, accelerations of the ground, changes of the
+   !> axial load [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(power)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind, and their velocities (springs); signals of the loads
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
       type(moving_body) :: body
       real(wp) :: force(2)
@@ -500,9 +540,10 @@ contains
       power = power + sum(force*body%top)
    end function power_of_loads
 
-   !> Angular momentum about the lowest joint, as it has slipped and opened [kg m2/s].
+   !> Angular momentum [kg m2/s] about the bottom of the first body, where slip and opening have moved it.
    pure real(wp) function angular_momentum(self, d, v) result(momentum)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind, and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
       type(moving_body) :: body
       real(wp) :: foot(2), bottom(2), top(2), lever(2)
@@ -520,11 +561,14 @@ contains
       end do
    end function angular_momentum
 
+   !> Displacement of the top along x [m].
    pure real(wp) function top_displacement(self, d) result(x)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: top(2)
 
+      ! One body, without openings
       if (size(d) == 2) then
          x = d(1) + self%length(1)*sin(d(2))
       else
@@ -533,8 +577,10 @@ contains
       end if
    end function top_displacement
 
+   !> Height of the top above the ground [m].
    pure real(wp) function top_height(self, d) result(y)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: top(2)
 
@@ -542,9 +588,10 @@ contains
       y = top(2)
    end function top_height
 
-   !> Place of the top.
+   !> Place of the top (x, y) [m].
    pure function top_place(self, d) result(top)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: top(2)
       type(moving_body) :: body
@@ -558,10 +605,13 @@ contains
       end do
    end function top_place
 
-   !> Acceleration of the top along x.
+   !> Acceleration of the top along x, relative to the ground [m/s2]: the sum of those of slips, openings and
+   !> lengths of the bodies.
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
       class(finite_chain_type), intent(in) :: self
+      !> Deformations of the joints by kind, and their first and second derivatives (springs)
       real(wp), intent(in), contiguous :: d(:), v(:), a(:)
+      !> Of a body: rotation and its derivatives; of its joint: acceleration along t and e of the body below
       real(wp) :: rotation, spin, spin_rate, s, c, along_t, along_e
       integer :: i, n
 

@@ -14,7 +14,8 @@ module rbs_structure_column_new_column
 
    public :: new_column
 
-   !> Rotary inertia of a body that does not turn [kg m2]: any positive number.
+   !> Rotary inertia of a body that does not turn [kg m2]: any positive number serves, as its rotation is
+   !> held.
    real(wp), parameter :: of_held_body = 1.0_wp
 
 contains
@@ -22,6 +23,7 @@ contains
    !> Make the column of a validated specification.
    subroutine new_column(column, spec)
       class(column_type), allocatable, intent(out) :: column
+      !> Validated
       type(column_record), intent(in) :: spec
       integer :: first, last, n
 
@@ -67,6 +69,7 @@ contains
       end if
       column%mass_damping = spec%damping%mass
       column%stiffness_damping = spec%damping%stiffness
+      ! In a chain the damping by stiffness acts in each spring by itself.
       column%spring_damping = column%stiffness_damping
       column%tangent_damping = spec%damping%tangent
       if (allocated(spec%damping%modal)) column%modal_damping = spec%damping%modal
@@ -88,7 +91,7 @@ contains
 
    contains
 
-      !> Set the heights of the joints.
+      !> Set the heights of the joints, and the displacement of the top per deformation of a joint (`arm`).
       subroutine set_heights()
          integer :: i, n
 
@@ -109,7 +112,7 @@ contains
          end do
       end subroutine set_heights
 
-      !> Centroids and rotary inertias, the lumped mass included.
+      !> Centroids and rotary inertias of the bodies; those of the last one with the mass lumped at the top.
       subroutine set_bodies()
          real(wp) :: own, shift
          integer :: i, n
@@ -117,6 +120,7 @@ contains
          n = column%n
          column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
          if (allocated(spec%rotary_inertia)) then
+            ! One value serves all bodies.
             column%inertia(first:last) = spec%rotary_inertia(min([(i, i=1, spec%n)], &
                            size(spec%rotary_inertia)))
          end if
@@ -129,6 +133,8 @@ contains
             return
          end if
          if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
+         ! The centroid of the last body moves up by `shift`. With parallel axes the body adds own shift^2 and
+         ! the lumped mass top_mass (upper - shift)^2, together own shift upper.
          own = column%mass(n)
          shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
          column%inertia(n) = column%inertia(n) + spec%top_inertia + own*shift*column%upper(n)
@@ -156,7 +162,8 @@ contains
          end do
       end subroutine set_mass_sums
 
-      !> Axial forces per vertical acceleration of the ground.
+      !> Axial forces per vertical acceleration of the ground [kg]: masses above a joint and, for the rotation
+      !> of a body, its own mass at its centroid and those above it.
       subroutine set_lifted_masses()
          integer :: n
 
@@ -169,7 +176,7 @@ contains
          column%lifted_joint = column%mass_above(:n)
       end subroutine set_lifted_masses
 
-      !> Set the places of the springs.
+      !> Set the places of the springs and their rules: of all joints shear, then flexure, then axial springs.
       subroutine set_springs()
          integer :: i, joint, n
 
@@ -193,7 +200,8 @@ contains
       end subroutine set_springs
    end subroutine new_column
 
-   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
+   !> The coordinates of the bodies, in which the mass is diagonal, their groups and the patterns of the
+   !> loads; see `rbs_structure_column_chain`.
    subroutine set_unknowns(column)
       class(column_type), intent(inout) :: column
       integer :: i, n, m
@@ -216,14 +224,16 @@ contains
          column%inertias(2*n + i) = column%mass(i)
          column%part(2*n + i) = n + i
       end do
-      ! A column of static paths alone may have none.
+      ! A column that is used on static paths alone may have no mass, or no rotary inertia.
       allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
       where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
       where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
       if (column%held) column%inverse_inertia(n) = 0.0_wp
+      ! A chain has no parts between its unknowns.
       allocate (column%initial_tangent(0))
       column%axial_count = 2*n
       column%work_size = 5*n
+      ! The spring whose force is the base shear
       column%base_spring = column%at(shear, 1)
       ! Translations, rotations, and openings if there are some.
       allocate (column%group(merge(3, 2, column%opens)))
@@ -233,6 +243,7 @@ contains
       do i = 1, size(column%pattern)
          allocate (column%pattern(i)%force(m), source=0.0_wp)
       end do
+      ! The lateral force acts at the top, `upper` above the centroid of the last body.
       column%pattern(lateral)%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
       if (column%held) column%pattern(lateral)%force(2*n) = 0.0_wp
       column%control = column%pattern(lateral)%force
@@ -241,6 +252,7 @@ contains
          column%pattern(vertical)%force(2*n + 1:) = -column%mass
          column%pattern(top_axial)%force(3*n) = -1.0_wp
       end if
+      ! Forces of the joints by each pattern; the unknowns from the first to the last that it acts on
       do i = 1, size(column%pattern)
          associate (pattern => column%pattern(i))
             allocate (pattern%arm(m))

@@ -22,14 +22,14 @@ module rbs_structure_column_sturm
 
    type, extends(dynamic_stiffness) :: sturm_chain
       private
-      !> Number of bodies
+      !> Number of bodies, and of joints
       integer :: n = 0
       !> Whether the last body is held against rotation
       logical :: held = .false.
-      !> Stiffness of the joints, translation and rotation (2, n)
+      !> Stiffness of the joints against translation and rotation (2, n) [N/m, N m]
       real(wp), allocatable :: k(:, :)
-      !> Distance of the centroid from the bottom and from the top of the body (n); axial force times length
-      !> of each body, axial force across the slip of each joint (n)
+      !> Distance of the centroid from the bottom and from the top of the body (n) [m]; axial force times
+      !> length of each body [N m], axial force across the slip of each joint [N], compression positive (n)
       real(wp), allocatable :: lower(:), upper(:), turning(:), sliding(:)
       !> Pivots, T and C of the joints at the last shift (7, n)
       real(wp), allocatable :: joint(:, :)
@@ -45,8 +45,10 @@ contains
       !> Stiffness of the joints against translation and rotation, masses and rotary inertias of the bodies,
       !> distances of their centroids from bottom and top (n)
       real(wp), intent(in) :: along(:), about(:), mass(:), inertia(:), lower(:), upper(:)
-      !> Axial forces times lengths of the bodies, then axial forces across the slips (2 n)
+      !> Axial forces times lengths of the bodies [N m], then axial forces across the slips [N], compression
+      !> positive (2 n)
       real(wp), intent(in) :: axial(:)
+      !> Whether the last body is held against rotation
       logical, intent(in) :: held
       integer :: n
 
@@ -57,6 +59,7 @@ contains
       self%inertia = reshape(transpose(reshape([mass, inertia], [n, 2])), [2*n])
       self%modes = count(self%inertia > 0.0_wp) - merge(1, 0, held)
       allocate (self%joint(7, n), self%reach(2*n), source=1.0_wp)
+      ! In modes a translation is about the height times a rotation; a chain of openings does not turn.
       self%reach(::2) = sum(lower + upper)
       if (.not. any(inertia > 0.0_wp)) self%reach = 1.0_wp
       self%lower = lower
@@ -65,10 +68,13 @@ contains
       self%sliding = axial(n + 1:)
    end function sturm_chain_of
 
-   !> Number of squared frequencies below s, under a multiple of the axial forces.
+   !> Eliminate at the shift s, with the axial forces times a multiple; the number of squared frequencies
+   !> below s.
    integer function factor(self, s, multiple) result(below)
       class(sturm_chain), intent(inout) :: self
+      !> Square of a circular frequency [1/s2]
       real(wp), intent(in) :: s
+      !> 1, if it is not given
       real(wp), intent(in), optional :: multiple
       real(wp) :: axial
 
@@ -81,10 +87,15 @@ contains
    !> Eliminate slip and rotation of the joints from the top down, see the head of this module. Two shifts by
    !> `arm` move T from the top of a body over its centroid, where its inertia is added, to its bottom.
    pure subroutine eliminate(n, held, k, mass, lower, upper, turning, sliding, s, axial, joint, below)
+      !> Number of bodies; whether the last one is held against rotation
       integer, intent(in) :: n
       logical, intent(in) :: held
+      !> Stiffness of the joints, mass and rotary inertia of the bodies, their lengths and axial forces as in
+      !> `sturm_chain`; shift [1/s2]; multiple of the axial forces
       real(wp), intent(in) :: k(2, n), mass(2, n), lower(n), upper(n), turning(n), sliding(n), s, axial
+      !> For each joint: inverse pivots (1, 2), T (3, 4) and C (5 to 7), as `substitute` needs them
       real(wp), intent(out) :: joint(7, n)
+      !> Number of negative pivots
       integer, intent(out) :: below
       real(wp) :: t11, t12, t22, c12, c21, c22, arm, b, p1, p2, stiffer
       integer :: i
@@ -136,10 +147,12 @@ contains
       end do
    end subroutine eliminate
 
-   !> Slips and relative rotations of the joints under the inertia forces of the bodies.
+   !> Solve (K - s M) d = M x: slips and relative rotations of the joints under inertia forces of the bodies.
    subroutine solve(self, x, d)
       class(sturm_chain), intent(in) :: self
+      !> Displacement and rotation of each body in turn (2 n)
       real(wp), intent(in), contiguous :: x(:)
+      !> Slip and relative rotation of each joint in turn (2 n)
       real(wp), intent(out), contiguous :: d(:)
 
       call substitute(self, self%inertia*x, d)
@@ -148,8 +161,9 @@ contains
    !> Deformations under loads: forces from the top down, deformations from the ground up.
    pure subroutine substitute(self, load, d)
       type(sturm_chain), intent(in) :: self
-      !> Forces and moments on the bodies, slips and relative rotations of the joints (2, n)
+      !> Force and moment on each body (2, n)
       real(wp), intent(in) :: load(2, self%n)
+      !> Slip and relative rotation of each joint (2, n)
       real(wp), intent(out) :: d(2, self%n)
       real(wp) :: force, moment, half, top, turned
       integer :: i
@@ -186,7 +200,9 @@ contains
    !> Motion of the bodies from that of the joints.
    pure subroutine motion(self, d, x)
       class(sturm_chain), intent(in) :: self
+      !> Slip and relative rotation of each joint in turn (2 n)
       real(wp), intent(in), contiguous :: d(:)
+      !> Displacement and rotation of each body in turn (2 n)
       real(wp), intent(out), contiguous :: x(:)
       real(wp) :: top, turned
       integer :: i
@@ -205,6 +221,7 @@ contains
    !> d' K d of a motion: that of the springs less that of the axial forces.
    pure real(wp) function stiffness_of(self, d, x) result(total)
       class(sturm_chain), intent(in) :: self
+      !> Slip and relative rotation of each joint, and displacement and rotation of each body, in turn (2 n)
       real(wp), intent(in), contiguous :: d(:), x(:)
       integer :: i
 
@@ -218,7 +235,8 @@ contains
       end do
    end function stiffness_of
 
-   !> The trace of M^-1 K.
+   !> The trace of M^-1 K, which bounds the sum of the squared frequencies, as axial forces count by size
+   !> [1/s2].
    pure real(wp) function sum_of_squares(self) result(total)
       class(sturm_chain), intent(in) :: self
       real(wp) :: turned

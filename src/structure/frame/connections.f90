@@ -13,8 +13,8 @@ module rbs_structure_frame_connections
 
 contains
 
-   !> The one node of each group whose displacement along x the others share; a support of any of them holds
-   !> all.
+   !> Let `like` of each node name the leader of its group, the node whose displacement along x the others
+   !> share; a support of any of them holds all. Refuse nodes that move with themselves.
    subroutine find_leaders(node, messages)
       type(frame_node), intent(inout) :: node(:)
       type(message_list), intent(inout) :: messages
@@ -22,6 +22,7 @@ contains
 
       do i = 1, size(node)
          leader(i) = i
+         ! A way that is longer than the number of nodes goes in a circle.
          do steps = 1, size(node)
             if (node(leader(i))%like == 0) exit
             leader(i) = node(leader(i))%like
@@ -44,6 +45,7 @@ contains
       type(message_list), intent(inout) :: messages
       integer :: i
 
+      ! Without floors above the base there is nothing to check.
       if (all(node%storey < 1)) return
       do i = 0, maxval(node%storey)
          if (all(node%storey /= i)) then
@@ -64,7 +66,8 @@ contains
       type(frame_member), intent(in) :: members(:)
       !> Count beams alone if true, columns alone if false; by default both
       logical, intent(in), optional :: beams
-      !> If present, leave out members that are pinned; those that come after the dead load
+      !> If present, whatever their values: leave out members that are pinned; those that are built after the
+      !> dead load
       logical, intent(in), optional :: unpinned, dead_load
       logical :: ends(size(nodes))
       integer :: i
@@ -72,6 +75,7 @@ contains
       ends = .false.
       do i = 1, size(members)
          associate (ends_at => members(i)%node)
+            ! A node that was not found
             if (any(ends_at == 0)) cycle
             if (present(unpinned) .and. members(i)%pinned) cycle
             if (present(dead_load) .and. members(i)%after_dead_load) cycle
@@ -87,6 +91,7 @@ contains
    subroutine hold_idle(nodes, members, grid_nodes)
       type(frame_node), intent(inout) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
+      !> Number of nodes of the grid, which come first
       integer, intent(in) :: grid_nodes
       logical :: has_member(size(nodes))
       integer :: i
@@ -108,19 +113,22 @@ contains
 
       turned = end_nodes(nodes, members, unpinned=.true.)
       do i = 1, size(nodes)
+         ! A spring from the ground resists the rotation.
          if (turned(i) .or. nodes(i)%ground(3)%rule /= '') cycle
          nodes(i)%held(3) = .true.
       end do
    end subroutine hold_between_pins
 
-   !> Refuse nodes at one place, nodes without a member, and members between the same nodes.
+   !> Refuse nodes at one place, nodes without a member, nodes joined only by members that are built after the
+   !> dead load, loads on displacements that are held, and members between the same nodes.
    subroutine check_geometry(nodes, members, grid_nodes, grid_members, messages)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
-      !> How many of them the grid has, which come first
+      !> How many nodes and members the grid has, which come first
       integer, intent(in) :: grid_nodes, grid_members
       type(message_list), intent(inout) :: messages
       real(wp) :: near
+      !> Whether a member ends in a node, and whether one that carries dead load does
       logical :: has_member(size(nodes)), is_carried(size(nodes))
       integer :: i, j
 
@@ -140,6 +148,8 @@ contains
                                  ' are at one place; move one of them, use one in place of both, or '// &
                                  'tie them by moves_with')
             end do
+            ! A grid has nodes where members are left out. `hold_idle` holds them, so that only a mass is a
+            ! fault.
             if (.not. has_member(i) .and. (i > grid_nodes .or. any(node%mass > 0.0_wp))) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
             else if (has_member(i) .and. .not. is_carried(i) .and. &
@@ -147,6 +157,7 @@ contains
                call messages%add("node '"//trim(node%name)//"' is joined by nothing but members that are "// &
                                  'built after the dead load; give it a support, or join it to the others')
             end if
+            ! Between pins alone the rotation is held; see `hold_between_pins`.
             if (node%held(3) .and. abs(node%load(3)) > 0.0_wp .and. .not. all(node%held)) then
                call messages%add("node '"//trim(node%name)//"' does not turn, and its load_moment does "// &
                                  'nothing; remove it, or join a member that is not pinned')
@@ -156,6 +167,7 @@ contains
             end if
          end associate
       end do
+      ! Members of the grid join different nodes.
       do i = grid_members + 1, size(members)
          do j = 1, i - 1
             ! A jacket is beside its column, and is built later.
@@ -189,13 +201,16 @@ contains
    subroutine check_tied(nodes, members, has_member, messages)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(in) :: members(:)
+      !> Whether a member ends in a node (nodes)
       logical, intent(in) :: has_member(:)
       type(message_list), intent(inout) :: messages
+      !> Part of each node, as the number of one of its nodes
       integer :: part(size(nodes)), i, first, other
       logical :: moved
 
       part = [(leader_of(nodes, i), i=1, size(part))]
       moved = .true.
+      ! A member makes one part of two, until nothing changes.
       do while (moved)
          moved = .false.
          do i = 1, size(members)
@@ -210,6 +225,7 @@ contains
       end do
       first = findloc(has_member, .true., dim=1)
       if (first == 0) return
+      ! Nodes without a member count for nothing.
       other = findloc(has_member .and. part /= part(first), .true., dim=1)
       if (other == 0) return
       call messages%add('frame: nodes '//trim(nodes(first)%name)//' and '//trim(nodes(other)%name)// &
@@ -217,8 +233,10 @@ contains
                         'them by a member, or let a node of one move with one of the other (moves_with)')
    end subroutine check_tied
 
-   !> The node whose displacement along x a node shares: itself, if none was given.
+   !> The node whose displacement along x a node shares: the one that was given or, in a building, the first
+   !> of its floor, else itself.
    pure integer function leader_of(nodes, node) result(leader)
+      !> Number of the node
       type(frame_node), intent(in) :: nodes(:)
       integer, intent(in) :: node
 

@@ -102,7 +102,7 @@ module rbs_structure_frame_element
 
 contains
 
-   !> Rows of unknowns that move x of an end, from those of x itself.
+   !> Columns of the matrices for a building: x of an end follows from unknowns of its floor, by shares.
    pure subroutine follow_floor(self, end_of, factor)
       class(frame_element), intent(inout) :: self
       !> The column of x that each follows from, and its share in it (columns)
@@ -110,6 +110,7 @@ contains
       real(wp), intent(in) :: factor(most_columns)
       integer :: k
 
+      ! Backward: the column of x itself, from which others are made, comes before them and is scaled last.
       do k = self%width, 1, -1
          if (end_of(k) == 0) cycle
          self%to_basic(:, k) = factor(k)*self%to_basic(:, end_of(k))
@@ -117,7 +118,7 @@ contains
       end do
    end subroutine follow_floor
 
-   !> Rows per unknown from `number`, `to_basic` and `lean`: zero where a support holds a displacement.
+   !> Columns for the unknowns alone, from `number`, `to_basic` and `lean`: zero where a support holds one.
    pure subroutine leave_out_supports(self)
       class(frame_element), intent(inout) :: self
       integer :: k
@@ -132,7 +133,7 @@ contains
       end do
    end subroutine leave_out_supports
 
-   !> Let no unknown move it, as long as it is not built.
+   !> Let no unknown move the element, as long as it is not built.
    pure subroutine disconnect(self)
       class(frame_element), intent(inout) :: self
 
@@ -142,11 +143,12 @@ contains
       self%built_at = 0.0_wp
    end subroutine disconnect
 
-   !> E I of a member whose springs hold all of its flexibility: under a moment that is constant it leaves its
-   !> chord by the same mean. Springs at its ends alone leave the chord straight.
+   !> Find E I of a member whose springs hold all of its flexibility: under a moment that is constant it
+   !> leaves its chord by the same mean. Springs at its ends alone leave the chord straight, and E I stays
+   !> zero.
    pure subroutine bend_as_springs(self, k)
       class(frame_element), intent(inout) :: self
-      !> Initial stiffness of all springs
+      !> Initial stiffness of all springs of the frame
       real(wp), intent(in) :: k(:)
       real(wp) :: off_chord
       integer :: j
@@ -177,12 +179,14 @@ contains
       if (allocated(self%rest)) deallocate (self%rest)
       if (.not. self%flexural_rigidity > 0.0_wp) return
       x = compression*self%length**2/self%flexural_rigidity/4.0_wp
+      ! Springs hold all flexibility, and compression adds none: there is no elastic rest.
       if (self%lumped .and. .not. abs(x) > no_compression) return
       c = shape_of(x)
       ! Moments (M, M) turn both ends by M l/6EI + 2M/(l GA), moments (M, -M) by M l/2EI without compression.
       flexible = [c/4.0_wp, 0.25_wp/(1.0_wp - c*x)]
       added = c/(1.0_wp - c*x)/8.0_wp
       if (self%lumped) then
+         ! Only what compression adds is in the rest.
          flexible = flexible - [1.0_wp, 3.0_wp]/12.0_wp
          added = added - 1.0_wp/24.0_wp
       end if
@@ -192,9 +196,10 @@ contains
       self%dead_rotation = [1.0_wp, -1.0_wp]*added*self%load_across*self%length**3/self%flexural_rigidity
    end subroutine set_rest
 
-   !> Whether it buckles under compression [N] where its ends are clamped, or between its pins.
+   !> Whether the element buckles under compression [N] between clamped ends or, if pinned, between its pins.
    pure logical function buckles(self, compression)
       class(frame_element), intent(in) :: self
+      !> Compression positive [N]
       real(wp), intent(in) :: compression
 
       buckles = compression*self%length**2 >= &
@@ -202,13 +207,15 @@ contains
                 .and. self%flexural_rigidity > 0.0_wp
    end function buckles
 
-   !> c = (1 - phi cot phi)/x with x = phi^2; of tension x < 0.
+   !> c = (1 - phi cot phi)/x with x = phi^2, of tension x < 0; see the head of this module.
    pure real(wp) function shape_of(x) result(c)
+      !> N l^2/4EI, compression positive
       real(wp), intent(in) :: x
       real(wp), parameter :: term(6) = [1.0_wp/3.0_wp, 1.0_wp/45.0_wp, 2.0_wp/945.0_wp, 1.0_wp/4725.0_wp, &
                                         2.0_wp/93555.0_wp, 1382.0_wp/638512875.0_wp]
       integer :: i
 
+      ! Close to 0 by the series, as the difference loses digits.
       if (abs(x) < small_x) then
          c = 0.0_wp
          do i = size(term), 1, -1
@@ -221,11 +228,14 @@ contains
       end if
    end function shape_of
 
-   !> Initial stiffness of the condensed springs.
+   !> Set the initial stiffness of the condensed springs, and what follows from it: their places, the axes of
+   !> joints of layers, and a stiffness against each motion of the ends.
    pure subroutine set_initial(self, k)
       class(frame_element), intent(inout) :: self
       !> Of the springs of the element, initial (springs)
       real(wp), intent(in), contiguous :: k(:)
+      !> Rows, stiffness and axes, see `inner_springs`; flexibility of the ends; sums k, k y and k y^2 of
+      !> layers
       real(wp) :: p(3, self%inner + 3), stiffness(self%inner + 3), flexible(3), turn(2, size(self%joint))
       real(wp) :: sums(3)
       integer :: i, j
@@ -268,9 +278,10 @@ contains
       if (allocated(self%rest)) condensed = condensed + size(self%rest)
    end function condensed
 
-   !> Rows and stiffness of the condensed springs for a stiffness of the springs.
+   !> Rows and stiffness of the condensed springs, from a stiffness of the springs of the element.
    pure subroutine inner_springs(self, springs, k, p, stiffness, turn)
       class(frame_element), intent(in) :: self
+      !> Number of springs of the element, and their stiffness
       integer, intent(in) :: springs
       real(wp), intent(in) :: k(springs)
       !> (3, condensed), (condensed); cosine and sine of the axes of a joint of layers (2, joints)
@@ -304,11 +315,16 @@ contains
       end if
    end subroutine inner_springs
 
-   !> Stiffness of a joint of layers along its two axes, and their directions.
+   !> Stiffness of a joint of layers along the two axes in which its matrix is diagonal, and their directions.
    pure subroutine find_axes(n, y, k, centre, radius, stiffness, turn)
+      !> Number of layers
       integer, intent(in) :: n
+      !> Distances of the layers from the middle [m], their stiffness [N/m]; y_0 and rho of `element_joint`
+      !> [m]
       real(wp), intent(in) :: y(n), k(n), centre, radius
+      !> [N/m]; cosine and sine of the turn of the axes
       real(wp), intent(out) :: stiffness(2), turn(2)
+      !> Sums k, k y and k y^2; the term between the axes; cotangent of twice the turn; tangent of the turn
       real(wp) :: sums(3), across, ratio, tangent
 
       sums = stiffness_sums(n, (y - centre)/radius, k)

@@ -18,8 +18,8 @@ module rbs_structure_frame_element_balance
 
 contains
 
-   !> Elongation of an element and rotations of its ends against the chord from the unknowns, or changes of
-   !> them; of a panel, the rotation of its columns against its beams.
+   !> Elongation of an element [m] and rotations of its ends against the chord [rad] from the unknowns, or
+   !> changes of them; of a panel, the rotation of its columns against its beams, then zeros.
    pure function end_motion(e, x) result(q)
       type(frame_element), intent(in) :: e
       !> (unknowns)
@@ -35,7 +35,7 @@ contains
          associate (row => e%from_unknowns, at => e%unknown)
             q = row(:, 1)*x(at(1)) + row(:, 2)*x(at(2)) + row(:, 3)*x(at(3)) &
                 + row(:, 4)*x(at(4)) + row(:, 5)*x(at(5)) + row(:, 6)*x(at(6))
-            ! In a building
+            ! In a building further unknowns of its floors move it.
             do k = ends + 1, e%width
                q = q + row(:, k)*x(at(k))
             end do
@@ -57,9 +57,10 @@ contains
       end do
    end function motion_terms
 
-   !> Rotation of the chord [rad].
+   !> Rotation of the chord, clockwise [rad].
    pure real(wp) function chord_rotation(e, x) result(rotation)
       type(frame_element), intent(in) :: e
+      !> (unknowns)
       real(wp), intent(in), contiguous :: x(:)
 
       rotation = sum(e%lean(3, :e%width)*x(e%unknown(:e%width)))
@@ -69,8 +70,9 @@ contains
    !> the part that its elastic rest has to follow.
    pure function compatibility_error(e, q, d, dead) result(misfit)
       type(frame_element), intent(in) :: e
-      !> Motion of the ends; deformations of all springs; share of the dead load that acts
+      !> Motion of the ends, of `end_motion`; share of the dead load that acts
       real(wp), intent(in) :: q(3), dead
+      !> Deformations of all springs (coordinates)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: misfit(3)
       integer :: j
@@ -79,6 +81,7 @@ contains
       misfit(2:) = misfit(2:) - dead*e%dead_rotation
       do j = 1, size(e%joint)
          associate (of => e%joint(j))
+            ! Opening and rotation of a joint of layers are two coordinates.
             misfit = misfit - of%arm(:, 1)*d(of%motion)
             if (.not. of%is_single) misfit = misfit - of%arm(:, 2)*d(of%motion + 1)
          end associate
@@ -92,6 +95,7 @@ contains
       !> Number of springs of the element, and their present stiffness
       integer, intent(in) :: springs
       real(wp), intent(in) :: k(springs)
+      !> On entry that of the last call
       type(series_tangent), intent(inout) :: tangent
       real(wp) :: change
       integer :: j, spared
@@ -125,9 +129,11 @@ contains
       real(wp), intent(in) :: misfit(3), dead, dead_force(springs)
       !> Forces of all springs
       real(wp), intent(in) :: f(springs)
+      !> Tangent of the element on the present lines of its springs
       type(series_tangent), intent(in) :: tangent
+      !> Axial force [N] and moments [N m] of the ends
       real(wp), intent(out) :: s(3)
-      !> (coordinates)
+      !> Set for the springs of this element (coordinates)
       real(wp), intent(inout), contiguous :: correction(:)
       real(wp) :: pair(2)
       integer :: j
@@ -148,15 +154,19 @@ contains
       if (allocated(e%y)) call turn_pairs(e, tangent, correction)
    end subroutine balance_ends
 
-   !> The forces of the ends alone, under all of the dead load.
+   !> The forces of the ends that `balance_ends` finds, alone, under all of the dead load.
    pure function balance_of_ends(e, springs, misfit, dead_force, f, tangent) result(s)
       type(frame_element), intent(in) :: e
+      !> Number of springs in the frame
       integer, intent(in) :: springs
+      !> Of `compatibility_error`; forces of the dead load in all springs; forces of all springs
       real(wp), intent(in) :: misfit(3), dead_force(springs), f(springs)
+      !> Tangent of the element on the present lines of its springs
       type(series_tangent), intent(in) :: tangent
       real(wp) :: s(3), pair(2)
       integer :: j
 
+      ! s = K m + sum f dd/dq, see `rbs_structure_condensation`
       associate (k => tangent%stiffness, rate => tangent%rate)
          s = k(:, 1)*misfit(1) + k(:, 2)*misfit(2) + k(:, 3)*misfit(3)
          do j = 1, size(e%joint)
@@ -172,10 +182,10 @@ contains
       end associate
    end function balance_of_ends
 
-   !> Forces along the axes of a joint of layers, without those of the dead load.
+   !> Forces along the axes of a joint of layers, without those of the dead load [N].
    pure function pair_forces(joint, f, dead, turn) result(along)
       type(element_joint), intent(in) :: joint
-      !> Axial force and moment, share of the dead load, direction of the axes
+      !> Axial force [N] and moment [N m], share of the dead load, cosine and sine of the axes
       real(wp), intent(in) :: f(2), dead, turn(2)
       real(wp) :: along(2), moment
 
@@ -183,9 +193,10 @@ contains
       along = [turn(1)*f(1) + turn(2)*moment, turn(1)*moment - turn(2)*f(1)]
    end function pair_forces
 
-   !> Openings and rotations of the joints of layers from the motions along their axes.
+   !> Openings and rotations of the joints of layers from the motions along their axes, in their places.
    pure subroutine turn_pairs(e, tangent, d)
       type(frame_element), intent(in) :: e
+      !> Tangent of the element on the present lines of its springs
       type(series_tangent), intent(in) :: tangent
       !> (coordinates)
       real(wp), intent(inout), contiguous :: d(:)
@@ -202,9 +213,10 @@ contains
       end do
    end subroutine turn_pairs
 
-   !> Add the forces on the unknowns by axial force and end moments of an element.
+   !> Add the forces on the unknowns that axial force and end moments of an element are in equilibrium with.
    pure subroutine add_end_forces(e, s, g)
       type(frame_element), intent(in) :: e
+      !> Axial force [N], moments of the first and the last end [N m]
       real(wp), intent(in) :: s(3)
       !> (unknowns)
       real(wp), intent(inout) :: g(:)
@@ -225,6 +237,7 @@ contains
    !> Add B' A B of an element to a lower band, B its elongation and rotations per unknown.
    pure subroutine add_band(e, a, band)
       type(frame_element), intent(in) :: e
+      !> Stiffness of the ends [N/m, N, N m]
       real(wp), intent(in) :: a(3, 3)
       !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
@@ -236,24 +249,31 @@ contains
       end if
    end subroutine add_band
 
-   !> Add the derivatives of the second-order forces of an axial force, with their sign turned.
+   !> Add the derivatives of the second-order forces of an axial force, with their sign turned, to a lower
+   !> band.
    pure subroutine add_geometric_band(e, compression, band)
       type(frame_element), intent(in) :: e
+      !> Compression positive [N]
       real(wp), intent(in) :: compression
+      !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
       real(wp) :: a(3, 3)
 
       a = 0.0_wp
+      ! The force leans with both rigid ends and with the chord.
       a(1, 1) = -compression*e%rigid(1)
       a(2, 2) = -compression*e%rigid(2)
       a(3, 3) = -compression*e%length
       call add_product(e%width, e%number, e%lean, a, band)
    end subroutine add_geometric_band
 
-   !> Add B' A B of three rows of the displacements of the ends.
+   !> Add B' A B of three rows of the displacements of the ends to a lower band.
    pure subroutine add_product(width, number, b, a, band)
+      !> Number of unknowns of the element; their numbers in the frame, 0 where a support holds one
       integer, intent(in) :: width, number(width)
+      !> Rows of B by unknowns of the element; A
       real(wp), intent(in) :: b(3, width), a(3, 3)
+      !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
       real(wp) :: row(3)
       integer :: i, j
@@ -275,9 +295,11 @@ contains
    !> Changes of deformations, openings and rotations with those of the ends of their element.
    pure subroutine spring_motion(e, tangent, q, d)
       type(frame_element), intent(in) :: e
+      !> Tangent of the element on the present lines of its springs
       type(series_tangent), intent(in) :: tangent
+      !> Changes of elongation and rotations of the ends
       real(wp), intent(in) :: q(3)
-      !> (coordinates)
+      !> Set for the springs and joints of this element (coordinates)
       real(wp), intent(inout), contiguous :: d(:)
       integer :: j
 
@@ -289,14 +311,16 @@ contains
       if (allocated(e%y)) call turn_pairs(e, tangent, d)
    end subroutine spring_motion
 
-   !> Take rates of springs that are round-off of their terms for zero.
+   !> Take rates of springs that are round-off of the terms that they are sums of for zero.
    pure subroutine drop_round_off(e, tangent, size_of, d)
       type(frame_element), intent(in) :: e
+      !> Tangent of the element on the present lines of its springs
       type(series_tangent), intent(in) :: tangent
       !> Sizes of the motion of the ends, see `motion_terms`
       real(wp), intent(in) :: size_of(3)
-      !> (springs)
+      !> Rates of all springs (springs)
       real(wp), intent(inout) :: d(:)
+      !> Sizes of round-off: along both axes of a joint, then of its opening [m] and rotation [rad]
       real(wp) :: least, across, opening, tilt
       integer :: j
 
@@ -319,9 +343,13 @@ contains
       end do
    end subroutine drop_round_off
 
+   !> Take rates of layers that are less than the round-off of opening and rotation of their joint for zero.
    pure subroutine drop_below(n, y, opening, tilt, d)
+      !> Number of layers
       integer, intent(in) :: n
+      !> Distances of the layers from the middle [m]; round-off of the opening and of the rotation
       real(wp), intent(in) :: y(n), opening, tilt
+      !> Rates of the layers
       real(wp), intent(inout) :: d(n)
       integer :: i
 
@@ -334,9 +362,11 @@ contains
    !> Energy of the elastic rest of an element [J].
    pure real(wp) function energy_of_rest(e, misfit) result(energy)
       type(frame_element), intent(in) :: e
-      !> Its elongation and rotations
+      !> Elongation and rotations of the rest, of `compatibility_error`
       real(wp), intent(in) :: misfit(3)
 
+      ! The rest bends in double curvature by half the sum, in single curvature by half the difference of the
+      ! rotations.
       energy = 0.5_wp*e%rest_along*misfit(1)**2
       if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(misfit(2) + misfit(3))**2 &
                                                          + e%rest(2)*(misfit(2) - misfit(3))**2)

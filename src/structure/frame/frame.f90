@@ -107,10 +107,12 @@ module rbs_structure_frame_frame
 
    interface
 
+      !> Whether any dead load acts.
       pure logical module function is_loaded(self)
          class(frame_type), intent(in) :: self
       end function is_loaded
 
+      !> Take all dead load off.
       pure module subroutine take_load_off(self)
          class(frame_type), intent(inout) :: self
       end subroutine take_load_off
@@ -137,6 +139,7 @@ module rbs_structure_frame_frame
       !> Put an axial force that does second-order work on an element.
       pure module subroutine compress(self, element, compression)
          class(frame_type), intent(inout) :: self
+         !> Number of the element
          integer, intent(in) :: element
          !> [N]
          real(wp), intent(in) :: compression
@@ -152,43 +155,51 @@ module rbs_structure_frame_frame
          class(frame_type), intent(inout) :: self
       end subroutine set_damping
 
-      !> Work of the dead load.
+      !> Work of the dead load on unknowns, springs and elastic rests [J].
       pure real(wp) module function work_of_dead_load(self, d) result(work)
          class(frame_type), intent(in) :: self
+         !> Deformations of the springs and unknowns, or changes of them (coordinates)
          real(wp), intent(in), contiguous :: d(:)
       end function work_of_dead_load
 
-      !> Of dead load and second-order work, and energy of the elastic parts.
+      !> Potential of dead load and second-order work, and energy of the elastic rests of elements [J].
       pure real(wp) module function potential_energy(self, d) result(energy)
          class(frame_type), intent(in) :: self
+         !> Deformations of the springs and unknowns (coordinates)
          real(wp), intent(in), contiguous :: d(:)
       end function potential_energy
 
-      !> Displacements of the nodes, forces of the members, deformations and forces of their springs by kind.
+      !> Channels of a frame: displacements of the nodes, forces of the members, deformations and forces of
+      !> their springs by kind.
       pure module subroutine channels(self, contents, channel)
          class(frame_type), intent(in) :: self
          type(row_contents), intent(in) :: contents
          type(channel_type), allocatable, intent(out) :: channel(:)
       end subroutine channels
 
+      !> Values of these channels at a time, one after the other.
       pure module subroutine fill_row(self, contents, response, springs, d, row)
          class(frame_type), intent(in) :: self
          type(row_contents), intent(in) :: contents
          type(response_type), intent(in) :: response
          type(spring_array), intent(in) :: springs
+         !> Deformations of the springs and unknowns (coordinates)
          real(wp), intent(in), contiguous :: d(:)
+         !> Values of `channels` without those of all structures
          real(wp), intent(out), contiguous :: row(:)
       end subroutine fill_row
 
       !> Base shear: forces along x of the supports and of the springs from the ground [N].
       pure real(wp) module function base_force(self, d, f) result(force)
          class(frame_type), intent(in) :: self
+         !> Deformations and unknowns (coordinates); forces of the springs (springs)
          real(wp), intent(in), contiguous :: d(:), f(:)
       end function base_force
 
       !> Whether a member carries nothing any more.
       pure logical module function is_removed(self, member, springs)
          class(frame_type), intent(in) :: self
+         !> Number of the member
          integer, intent(in) :: member
          type(spring_array), intent(in) :: springs
       end function is_removed
@@ -198,6 +209,7 @@ module rbs_structure_frame_frame
       integer module function next_failed_member(self, springs, time) result(member)
          class(frame_type), intent(in) :: self
          type(spring_array), intent(in) :: springs
+         !> [s]; without it no member is lost by time
          real(wp), intent(in), optional :: time
       end function next_failed_member
 
@@ -205,6 +217,7 @@ module rbs_structure_frame_frame
       !> the work of the dead load in them, which is carried to the nodes and stays there.
       module subroutine remove_member(self, member, springs)
          class(frame_type), intent(in) :: self
+         !> Number of the member
          integer, intent(in) :: member
          type(spring_array), intent(inout) :: springs
       end subroutine remove_member
@@ -212,6 +225,7 @@ module rbs_structure_frame_frame
       !> Whether a node has sunk by a tenth of the height of a storey, once members may be lost.
       pure logical module function has_collapsed(self, d)
          class(frame_type), intent(in) :: self
+         !> Deformations of the springs and unknowns (coordinates)
          real(wp), intent(in), contiguous :: d(:)
       end function has_collapsed
 
@@ -219,6 +233,7 @@ module rbs_structure_frame_frame
       !> carry the dead load, or the end moments, of its member any more.
       pure integer module function unbounded_spring(self, d) result(spring)
          class(frame_type), intent(in) :: self
+         !> Deformations of the springs and unknowns (coordinates)
          real(wp), intent(in), contiguous :: d(:)
       end function unbounded_spring
 
@@ -226,15 +241,17 @@ module rbs_structure_frame_frame
 
 contains
 
-   !> Displacement of a node along x of its plane.
+   !> Displacement of a node along x of its plane [m].
    pure real(wp) function along_x(self, node, x) result(moved)
       class(frame_type), intent(in) :: self
+      !> Number of the node
       integer, intent(in) :: node
       !> Unknowns, or changes of them (unknowns)
       real(wp), intent(in) :: x(:)
       integer :: j
 
       moved = 0.0_wp
+      ! A support holds it.
       if (self%number(1, node) == 0) return
       moved = self%share(1, node)*x(self%number(1, node))
       do j = 1, 2
@@ -242,10 +259,12 @@ contains
       end do
    end function along_x
 
-   !> Forces on the unknowns of one along x of a node.
+   !> Add the forces on the unknowns by a force along x of a node.
    pure subroutine add_along_x(self, node, force, row)
       class(frame_type), intent(in) :: self
+      !> Number of the node
       integer, intent(in) :: node
+      !> To +x of its plane [N]
       real(wp), intent(in) :: force
       !> (unknowns)
       real(wp), intent(inout) :: row(:)
@@ -262,9 +281,10 @@ contains
       end do
    end subroutine add_along_x
 
-   !> Drift of a storey in a plane of a building.
+   !> Drift ratio of a storey in a plane of a building; 0 where the plane has no node on its upper floor.
    pure real(wp) function plane_drift(self, plane, storey, x) result(drift)
       class(frame_type), intent(in) :: self
+      !> Numbers of the plane and of the storey
       integer, intent(in) :: plane, storey
       !> (unknowns)
       real(wp), intent(in) :: x(:)
@@ -274,11 +294,12 @@ contains
       drift = sum(self%plan%share(:, plane, storey)*self%plan%motion(storey, x))
       if (storey > 1) drift = drift - &
                               sum(self%plan%share(:, plane, storey - 1)*self%plan%motion(storey - 1, x))
+      ! At the base a node may move on springs from the ground.
       if (storey == 1 .and. self%foot(plane) > 0) drift = drift - self%along_x(self%foot(plane), x)
       drift = drift/self%storey_height(storey)
    end function plane_drift
 
-   !> Tangents of the elements on lines of the springs.
+   !> Tangents of the elements on the present lines of the springs.
    subroutine linearise(self, k, tangent, unstable, shares)
       class(frame_type), intent(in) :: self
       !> Stiffness of the springs (springs)
@@ -287,6 +308,7 @@ contains
       type(series_tangent), intent(inout) :: tangent(:)
       !> An element that snaps back; 0: none
       integer, intent(out) :: unstable
+      !> Whether springs without stiffness share motions in any element
       logical, intent(out), optional :: shares
       integer :: i
 
@@ -299,12 +321,15 @@ contains
       if (present(shares)) shares = any(tangent%is_mechanism)
    end subroutine linearise
 
-   !> Stiffness of the elements, from their tangents, and of the ground.
+   !> Add the stiffness of the elements, from their tangents, and of the springs from the ground to a lower
+   !> band.
    subroutine add_stiffness(self, k, tangent, band)
       class(frame_type), intent(in) :: self
-      !> Of the springs (springs)
+      !> Stiffness of the springs (springs); those in elements are in the tangents already
       real(wp), intent(in), contiguous :: k(:)
+      !> Tangents of the elements (elements)
       type(series_tangent), intent(in) :: tangent(:)
+      !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
       integer :: i
 
@@ -314,17 +339,21 @@ contains
       band(1, self%ground) = band(1, self%ground) + k(self%member_springs + 1:)
    end subroutine add_stiffness
 
-   !> Damping of the modes, and in proportion to the stiffness of the elements, initial or present.
+   !> Add the forces of the damping: of the modes, and in proportion to the stiffness of the elements, initial
+   !> or present.
    subroutine damp(self, v, tangent, g)
       class(frame_type), intent(in) :: self
+      !> Velocities of the unknowns (unknowns), tangents of the elements
       real(wp), intent(in), contiguous :: v(:)
       type(series_tangent), intent(in) :: tangent(:)
+      !> Forces on the unknowns (unknowns)
       real(wp), intent(inout), contiguous :: g(:)
       real(wp) :: s(3)
       integer :: i
 
       if (allocated(self%modal_momenta)) call damp_modes(self, size(self%massed), v, g)
       if (allocated(self%damping)) call self%damping%subtract_product(v, g)
+      ! In proportion to the initial stiffness it is in `damping`.
       if (.not. self%tangent_damping) return
       do i = 1, size(tangent)
          associate (k => tangent(i)%stiffness, q => end_motion(self%element(i), v))
@@ -334,11 +363,12 @@ contains
       end do
    end subroutine damp
 
-   !> Subtract the damping of the modes.
+   !> Subtract the damping forces of the modes.
    pure subroutine damp_modes(self, massed, v, g)
       class(frame_type), intent(in) :: self
       !> Number of unknowns with mass
       integer, intent(in) :: massed
+      !> Velocities of the unknowns, and forces on them (unknowns)
       real(wp), intent(in), contiguous :: v(:)
       real(wp), intent(inout), contiguous :: g(:)
       real(wp) :: speed(massed), force(massed)
@@ -346,6 +376,7 @@ contains
 
       speed = v(self%massed)
       force = 0.0_wp
+      ! The matrix itself, where it takes fewer numbers
       if (allocated(self%modal_matrix)) then
          do i = 1, massed
             force = force + self%modal_matrix(:, i)*speed(i)
@@ -358,9 +389,10 @@ contains
       g(self%massed) = g(self%massed) - force
    end subroutine damp_modes
 
-   !> Add a factor times the damping matrix.
+   !> Add a factor times the damping matrix, but for the modes, to a lower band.
    subroutine add_damping(self, factor, tangent, band)
       class(frame_type), intent(in) :: self
+      !> Factor; tangents of the elements; (half_width + 1, unknowns)
       real(wp), intent(in) :: factor
       type(series_tangent), intent(in) :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
@@ -376,7 +408,9 @@ contains
    !> Changes of the deformations from those of the unknowns. Those of layers follow from their joints.
    subroutine spring_rates(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
+      !> Tangents of the elements
       type(series_tangent), intent(in) :: tangent(:)
+      !> Changes of the unknowns (unknowns), and of all coordinates
       real(wp), intent(in), contiguous :: dx(:)
       real(wp), intent(out), contiguous :: dd(:)
       integer :: i
@@ -384,17 +418,23 @@ contains
       do i = 1, size(self%element)
          call spring_motion(self%element(i), tangent(i), end_motion(self%element(i), dx), dd)
       end do
+      ! Springs from the ground deform by one unknown; behind all springs a position has the unknowns
+      ! themselves.
       dd(self%member_springs + 1:self%springs) = dx(self%ground)
       dd(self%springs + 1:self%joints%before) = dx
    end subroutine spring_rates
 
-   !> Larger rates are those of the ends of the element, and of all elements, as displacements are round-off
-   !> of each other.
+   !> Take rates of springs that are round-off of larger ones for zero. The larger ones are those of the ends
+   !> of the element, and a share of those of all elements, as displacements are round-off of each other.
    pure subroutine clear_round_off(self, tangent, dx, k, dd)
       class(frame_type), intent(in) :: self
+      !> Tangents of the elements
       type(series_tangent), intent(in) :: tangent(:)
+      !> Rates of the unknowns (unknowns); stiffness of the springs, which is not used
       real(wp), intent(in), contiguous :: dx(:), k(:)
+      !> Rates of the springs (springs)
       real(wp), intent(inout), contiguous :: dd(:)
+      !> Sizes of elongation and end rotations: of the elements, largest, and with which rates are compared
       real(wp) :: terms(3, size(self%element)), largest(3), size_of(3)
       integer :: i
 
@@ -413,12 +453,15 @@ contains
       end do
    end subroutine clear_round_off
 
-   !> Largest force of elements and dead loads, and the largest force and the work of elements that are
-   !> sums of terms of one sign; moments over the height.
+   !> Sizes that measure round-off: the largest force of elements and dead loads and, as if all terms had one
+   !> sign, the largest force and the work of elements; moments over the height.
    subroutine size_of_parts(self, springs, least, force, terms, work)
       class(frame_type), intent(in) :: self
+      !> Springs in their present state
       type(spring_array), intent(in) :: springs
+      !> Least displacement that counts, in shares of the height
       real(wp), intent(in) :: least
+      !> Largest force [N]; largest force of terms of one sign [N], and their work [J]
       real(wp), intent(out) :: force, terms, work
       real(wp) :: s(3), q(3), to_force(3), f(springs%count)
       integer :: i
@@ -431,6 +474,7 @@ contains
       associate (x => springs%d(self%springs + 1:self%joints%before))
          do i = 1, size(self%element)
             associate (e => self%element(i))
+               ! Elements behind the members are panels.
                if (i <= self%members) then
                   call self%member_forces(i, springs%d, f, s)
                   force = max(force, maxval(abs(s)*to_force))
@@ -444,8 +488,10 @@ contains
       end associate
    end subroutine size_of_parts
 
+   !> Changes of the unknowns from those of a position, which holds them behind the springs.
    pure subroutine unknown_rates(self, dd, dx)
       class(frame_type), intent(in) :: self
+      !> Changes of a position (coordinates), of the unknowns (unknowns)
       real(wp), intent(in), contiguous :: dd(:)
       real(wp), intent(out), contiguous :: dx(:)
 
@@ -457,11 +503,18 @@ contains
    !> bring the inside of the elements to equilibrium.
    subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
       class(frame_type), intent(in) :: self
+      !> Deformations and unknowns (coordinates), signals of the loads; `axial` is not used, see
+      !> `second_order`
       real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+      !> Tangents of the elements
       type(series_tangent), intent(in) :: tangent(:)
+      !> Forces of the springs (springs), which a frame does not change
       real(wp), intent(inout), contiguous :: f(:)
+      !> Forces on the unknowns (unknowns) [N, N m]
       real(wp), intent(out), contiguous :: g(:)
+      !> Changes of the deformations that bring the inside of the elements to equilibrium (coordinates)
       real(wp), intent(inout), contiguous :: correction(:)
+      !> Share of the dead load that acts; without it, all
       real(wp), intent(in), optional :: dead
       real(wp) :: misfit(3), s(3), part
       integer :: i
@@ -485,9 +538,11 @@ contains
    !> Axial force, tension positive, and moments of the ends of a member under all of its dead load.
    pure subroutine member_forces(self, member, d, f, s)
       class(frame_type), intent(in) :: self
+      !> Number of the member
       integer, intent(in) :: member
-      !> Deformations and forces of all springs (springs)
+      !> Deformations and unknowns (coordinates); forces of all springs (springs)
       real(wp), intent(in), contiguous :: d(:), f(:)
+      !> Axial force, moments of the first and the last end [N, N m]
       real(wp), intent(out) :: s(3)
       real(wp) :: misfit(3)
 
@@ -497,15 +552,19 @@ contains
       end associate
    end subroutine member_forces
 
+   !> Axial forces of the members that do second-order work: those under dead load, whatever the loads.
    subroutine axial_forces(self, load, axial)
       class(frame_type), intent(in) :: self
+      !> Signals of the loads, which have no part in it
       real(wp), intent(in), contiguous :: load(:)
+      !> (members, or none) [N]
       real(wp), intent(out), contiguous :: axial(:)
 
       axial = self%element(:size(axial))%compression
    end subroutine axial_forces
 
-   !> Add the derivatives of second-order forces, with their sign turned; they are those of the dead load.
+   !> Add the derivatives of second-order forces, with their sign turned, to a lower band; the axial forces
+   !> are those under dead load, and `k` is not used.
    subroutine add_geometric(self, k, band)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: k(:)
@@ -514,8 +573,10 @@ contains
       if (allocated(self%second_order)) call self%second_order%add_to(1.0_wp, band)
    end subroutine add_geometric
 
+   !> Rotations of the nodes, 0 where a support holds one.
    pure subroutine rotations(self, d, rotation)
       class(frame_type), intent(in) :: self
+      !> Deformations and unknowns (coordinates), or changes of them; rotations (nodes) [rad]
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(out), contiguous :: rotation(:)
       integer :: i
@@ -526,15 +587,17 @@ contains
       end do
    end subroutine rotations
 
-   !> Differences of the displacements of the floors, mean of their nodes, over the heights.
+   !> Drift ratios of the storeys: differences of the displacements of the floors, mean of their nodes, over
+   !> the heights; of a building the largest of all planes.
    pure subroutine storey_drifts(self, d, drift)
       class(frame_type), intent(in) :: self
+      !> Deformations and unknowns (coordinates)
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(out), contiguous :: drift(:)
       integer :: i, plane
 
       if (self%plan%is_given()) then
-         ! Those of the plane that has the largest.
+         ! The largest drift of any plane
          do i = 1, self%storeys
             associate (of_planes => [(abs(self%plane_drift(plane, i, d(self%springs + 1:))), &
                                       plane=1, self%plan%planes())])
@@ -555,15 +618,19 @@ contains
       end do
    end subroutine storey_drifts
 
-   !> A mode of a building that moves no mass along x has the sign of that along y, or of the turn of its
-   !> roof.
+   !> A shape of vibration with its sign: the masses move to +x. A mode of a building that moves no mass along
+   !> x has the sign of that along y, or of the turn of its roof.
    pure subroutine set_shape(self, part, found, shape)
       class(frame_type), intent(in) :: self
+      !> Number of the part, of which a frame has one
       integer, intent(in) :: part
+      !> The shape (unknowns)
       real(wp), intent(in), contiguous :: found(:)
+      !> The same with its sign
       real(wp), intent(inout), contiguous :: shape(:)
       real(wp) :: moved(3), roof(3)
 
+      ! Momentum along x and y per unit of the motion, and for a building a measure of the turn of its roof
       moved = [-self%work_of(horizontal, found), -self%work_of(sideways, found), 0.0_wp]
       if (self%plan%is_given()) then
          roof = self%plan%motion(self%storeys, found)
@@ -574,9 +641,10 @@ contains
       shape = sign(1.0_wp, moved(1))*found
    end subroutine set_shape
 
-   !> Refuse an axial load: that of columns follows from the dead load.
+   !> Refuse an axial load, as that of columns follows from the dead load, and loads that nothing takes.
    subroutine check_loads(self, acts, error)
       class(frame_type), intent(in) :: self
+      !> Which loads act (signals)
       logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(inout) :: error
 

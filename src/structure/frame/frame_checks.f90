@@ -15,7 +15,7 @@ module rbs_structure_frame_frame_checks
    !> A mechanism of sections that harden less is known to fewer digits than its energies are checked to.
    real(wp), parameter :: least_hardening = 1.0e-7_wp
 
-   !> Groups of springs, in the order of their kinds.
+   !> Groups of springs, in the order of their kinds, and the words for their places in rules and messages.
    character(len=*), parameter :: group_of(3) = [character(len=12) :: 'shear', 'flexure', 'axial_spring']
    character(len=*), parameter :: place_of(3) = [character(len=8) :: 'shear', 'flexure', 'axial']
 
@@ -68,7 +68,7 @@ contains
       end do
    end subroutine check_values
 
-   !> Check the kinds of members.
+   !> Check the kinds of members, each by itself, and that no name is given twice.
    subroutine check_kinds(record, messages)
       type(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages
@@ -78,7 +78,7 @@ contains
          associate (k => record%kind(i))
             known = messages%count
             if (is_rigid(k, record%spring) .or. is_strut(k, record%spring)) then
-               ! They do nothing, and need not be given.
+               ! Elastic values do nothing in these kinds and need not be given; 1 passes the check.
                k%modulus = 1.0_wp
                k%area = 1.0_wp
                k%inertia = 1.0_wp
@@ -92,7 +92,7 @@ contains
       end do
    end subroutine check_kinds
 
-   !> Check the infills.
+   !> Check the infills, each by itself, and where they are.
    subroutine check_infills(record, messages)
       type(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages
@@ -121,10 +121,13 @@ contains
 
    !> A spring stands in one place, where its rule may be used.
    subroutine check_spring(s, kind_of, messages)
+      !> The spring with its place
       type(frame_spring), intent(inout) :: s
+      !> All kinds of members
       type(kind_record), intent(in) :: kind_of(:)
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: name, from
+      !> Number of the group of springs in `group_of`
       integer :: kind
       logical :: within
 
@@ -167,11 +170,14 @@ contains
       if (.not. within) call messages%add(name//': position is a share of the clear length, from 0 to 1')
    end subroutine check_spring
 
-   !> A kind is elastic, yields at its points, or has springs of its own.
+   !> Refuse values of a kind that contradict each other: it is elastic, yields at its points, or has springs
+   !> of its own.
    subroutine check_kind(record, kind, messages)
       type(frame_record), intent(in) :: record
       type(kind_record), intent(in) :: kind
       type(message_list), intent(inout) :: messages
+      !> Number of flexural springs; the lowest and the highest position of springs that turn, in shares of
+      !> the length
       integer :: i, bending
       real(wp) :: least, most
 
@@ -188,7 +194,7 @@ contains
       do i = 1, size(record%spring)
          associate (s => record%spring(i))
             if (s%kind /= kind%name .or. s%group == 'axial_spring') cycle
-            ! A slip turns both ends alike, which no spring at an end does.
+            ! A slip turns both ends alike, which no spring at an end does: it counts as one more position.
             if (s%group == 'shear') most = most + 2.0_wp
             if (s%group == 'shear') cycle
             if (.not. allocated(s%position)) then
@@ -240,6 +246,7 @@ contains
    !> Whether members of a kind do not deform at all.
    pure logical function is_rigid(kind, spring)
       type(kind_record), intent(in) :: kind
+      !> All springs of the frame
       type(frame_spring), intent(in) :: spring(:)
 
       is_rigid = kind%interior == 'rigid' .and. .not. (is_given(kind%yield_moment) .or. &
@@ -249,22 +256,25 @@ contains
    !> Whether members of a kind are springs between two pins, and nothing else.
    pure logical function is_strut(kind, spring)
       type(kind_record), intent(in) :: kind
+      !> All springs of the frame
       type(frame_spring), intent(in) :: spring(:)
 
       is_strut = kind%interior == 'rigid' .and. kind%ends == 'pinned' .and. any(spring%kind == kind%name)
    end function is_strut
 
-   !> Springs of a kind that may fail in shear.
+   !> Whether a spring belongs to a kind of this name and may fail in shear.
    elemental logical function softens(spring, kind)
       type(frame_spring), intent(in) :: spring
+      !> Name of the kind
       character(len=*), intent(in) :: kind
 
       softens = spring%kind == kind .and. spring%group == 'shear' .and. &
                 (spring%spring%rule == 'peak_oriented' .or. spring%spring%rule == 'pinching')
    end function softens
 
-   !> A name that must be one of a list.
+   !> Refuse a name that is not in a list.
    subroutine check_reference(word, names, owner, key, messages)
+      !> Name; those that there are; where it was given, and the key or the kind of thing, for the message
       character(len=*), intent(in) :: word, names(:), owner, key
       type(message_list), intent(inout) :: messages
 

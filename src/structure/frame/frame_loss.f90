@@ -14,6 +14,7 @@ submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
 
 contains
 
+   !> Whether a member carries nothing any more: all of its springs are released together, so that one tells.
    module procedure is_removed
 
       associate (e => self%element(member))
@@ -22,6 +23,8 @@ contains
       end associate
    end procedure is_removed
 
+   !> The first member whose time has come, or that has failed and is at the drift of its axial failure; 0:
+   !> none. Without `time`, on a static path, none is lost by time.
    module procedure next_failed_member
       integer :: i
 
@@ -42,11 +45,14 @@ contains
    !> Whether a member has failed in shear and is at the drift of its axial failure.
    logical function has_failed(frame, member, springs)
       type(frame_type), intent(in) :: frame
+      !> Number of the member, and springs in their present state
       integer, intent(in) :: member
+      !> Springs in their present state
       type(spring_array), intent(in) :: springs
       real(wp) :: drift, s(3)
       integer :: i
 
+      ! Its shear failure is by drift, or by a shear spring that has yielded.
       associate (e => frame%element(member), x => springs%d(frame%springs + 1:))
          drift = abs(chord_rotation(e, x))
          has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
@@ -57,12 +63,15 @@ contains
          end do
          if (.not. has_failed) return
          call frame%member_forces(member, springs%d, springs%forces(springs%d), s)
-         ! Tension, or no load, does not fall.
+         ! A member in tension, or without axial force, does not fall. s(1) < 0 is compression, so that the
+         ! drift reaches failure_drift/(1 + P/failure_load).
          has_failed = s(1) < 0.0_wp .and. &
                       drift*(1.0_wp - s(1)/frame%failure_load(member)) >= frame%failure_drift(member)
       end associate
    end function has_failed
 
+   !> Take the forces of a member away: release its springs, find its inside in equilibrium without them, and
+   !> book the energy of its elastic rest that is lost as work of its first spring.
    module procedure remove_member
       type(series_tangent) :: tangent
       real(wp) :: correction(size(springs%d)), s(3), q(3), energy
@@ -90,29 +99,35 @@ contains
       end associate
    end procedure remove_member
 
+   !> Whether a node has sunk by a tenth of the height of a storey, once members may be lost.
    module procedure has_collapsed
       integer :: i
 
       has_collapsed = .false.
       if (.not. self%may_lose) return
       do i = 1, self%n
+         ! Held upward
          if (self%number(2, i) == 0) cycle
          has_collapsed = has_collapsed .or. &
                       d(self%springs + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
       end do
    end procedure has_collapsed
 
+   !> The first spring in a member that has slid, or opened, by the height of the frame or turned by
+   !> `farthest`; 0: none.
    module procedure unbounded_spring
       integer :: j
 
       do j = 1, self%joints%count
          spring = self%joints%first(j)
+         ! Of a joint of layers opening and rotation count.
          associate (at => self%joints%before + 2*j)
             if (abs(d(at - 1)) > self%height .or. abs(d(at)) > farthest) return
          end associate
       end do
       do j = 1, size(self%joints%others)
          spring = self%joints%others(j)
+         ! Springs from the ground come behind those of members.
          if (spring > self%member_springs) exit
          if (abs(d(spring)) < min(self%height, farthest)) cycle
          if (abs(d(spring)) > merge(farthest, self%height, self%location(spring)%kind == flexure)) return

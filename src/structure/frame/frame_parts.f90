@@ -40,16 +40,17 @@ module rbs_structure_frame_frame_parts
 
 contains
 
-   !> Lay out the frame; all messages together.
+   !> Lay out the frame of a record; messages on all that is wrong are given together.
    subroutine find(self, record, messages)
       class(frame_parts), intent(out) :: self
       class(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages
+      !> Number of messages before
       integer :: known
 
       known = messages%count
       call check_values(record, messages)
-      ! Of a grid in plan Python makes planes, which are checked then.
+      ! Of a grid in plan Python makes planes, which are checked when they are solved.
       if (allocated(record%bays_x)) return
       if (messages%count > known) return
       call lay_grid(self, record, messages)
@@ -74,12 +75,13 @@ contains
       if (.not. record%is_part) call push(self, record, messages)
    end subroutine find
 
-   !> Nodes, columns and beams of the grid.
+   !> Lay out nodes, columns and beams of the grid, with the masses of its floors.
    subroutine lay_grid(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
       integer :: bays, i, j, known, l, lines, s, storeys
+      !> Whether a member ends in the node of a line, on the present floor
       logical, allocatable :: is_joined(:)
 
       known = messages%count
@@ -107,6 +109,7 @@ contains
             call add_cell(self, record, 'B', l, s, bays, [s*lines + l, s*lines + l + 1])
          end do
       end do
+      ! Nodes are numbered floor by floor from the left.
       i = 0
       do s = 0, storeys
          do l = 1, lines
@@ -125,6 +128,7 @@ contains
             end associate
          end do
          if (s == 0) cycle
+         ! With a diaphragm the first node of a floor that has members leads the others.
          associate (first => i - lines + findloc(is_joined, .true., dim=1))
             call put_mass(self%node(i - lines + 1:i), record, s, is_joined)
             if (record%diaphragm .and. any(is_joined)) then
@@ -145,6 +149,7 @@ contains
       type(frame_member), intent(in) :: member(:)
       !> 'C' or 'B'
       character(len=1), intent(in) :: letter
+      !> Group that would name kinds, for the message
       character(len=*), intent(in) :: group
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: others
@@ -161,13 +166,15 @@ contains
                         others//': no kind is given; give '//group//' and storey = 0 for all')
    end subroutine check_named
 
-   !> Groups of a grid must lie in it.
+   !> Refuse groups that name what the grid does not have, and loads that it cannot take.
    subroutine check_cells(record, storeys, bays, messages)
       type(frame_record), intent(in) :: record
+      !> Numbers of storeys and bays of the grid
       integer, intent(in) :: storeys, bays
       type(message_list), intent(inout) :: messages
       integer :: i
 
+      ! Floors of a building, which has planes, are checked by `lay_floors`.
       do i = 1, merge(0, size(record%floor), size(record%plane) > 0)
          if (record%floor(i)%floor > storeys) then
             call refuse('floor: floor', record%floor(i)%floor, 'floors', storeys)
@@ -198,10 +205,12 @@ contains
 
    contains
 
-      !> Check a rule of places and the name in it.
+      !> Check a group that gives the members of some places a kind.
       subroutine check_cell(cell, group, key, what, most)
          type(cell_record), intent(in) :: cell
+         !> Group and key of the line or bay, what these are in plural, and how many there are
          character(len=*), intent(in) :: group, key, what
+         !> Largest number of a line or bay
          integer, intent(in) :: most
 
          call check_storey(group, cell%storey)
@@ -214,6 +223,7 @@ contains
                               "' are given; remove one")
          end if
          if (cell%kind == 'none') then
+            ! 'none' leaves the members out.
             continue
          else if (cell%is_infill) then
             call check_reference(cell%kind, [record%infill%name], group, 'infill', messages)
@@ -223,14 +233,18 @@ contains
          if (cell%line > most) call refuse(group//': '//key, cell%line, what, most)
       end subroutine check_cell
 
+      !> Refuse a storey that the grid does not have.
       subroutine check_storey(group, storey)
+         !> Name of the group, for the message; number that it names
          character(len=*), intent(in) :: group
          integer, intent(in) :: storey
 
          if (storey > storeys) call refuse(group//': storey', storey, 'storeys', storeys)
       end subroutine check_storey
 
+      !> Refuse a number above the largest one.
       subroutine refuse(key, value, what, most)
+         !> Key, and what is numbered, in plural; value, and the largest one
          character(len=*), intent(in) :: key, what
          integer, intent(in) :: value, most
 
@@ -239,17 +253,20 @@ contains
       end subroutine refuse
    end subroutine check_cells
 
-   !> Shares of the mass of a floor by the widths of the bays beside its nodes.
+   !> Share the mass of a floor among its nodes, by the widths of the bays beside them.
    subroutine put_mass(node, record, storey, is_joined)
-      !> All of the floor
+      !> All nodes of the floor
       type(frame_node), intent(inout) :: node(:)
       type(frame_record), intent(in) :: record
+      !> Number of the floor
       integer, intent(in) :: storey
+      !> Whether a member ends in a node (nodes of the floor)
       logical, intent(in) :: is_joined(:)
       real(wp) :: mass, part(size(node)), width(size(node) - 1)
       integer :: i
 
       mass = 0.0_wp
+      ! The last group that fits counts.
       do i = 1, size(record%floor)
          if (any(record%floor(i)%floor == [0, storey])) mass = record%floor(i)%mass
       end do
@@ -264,12 +281,13 @@ contains
       node%mass(2) = mass*part
    end subroutine put_mass
 
-   !> A column or a beam of the grid.
+   !> Add a column or a beam of the grid, if its group does not leave it out.
    subroutine add_cell(self, record, letter, line, storey, last, node)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
+      !> 'C' or 'B'
       character(len=1), intent(in) :: letter
-      !> Place, number of lines or bays, nodes
+      !> Line or bay, storey, number of lines or bays, nodes of its ends
       integer, intent(in) :: line, storey, last, node(2)
       type(frame_member) :: member
       integer :: i
@@ -290,8 +308,9 @@ contains
 
    contains
 
-      !> The last group that fits.
+      !> Take kind and rigid ends of the last group that fits.
       subroutine choose(cell)
+         !> Groups for columns, or for beams
          type(cell_record), intent(in) :: cell(:)
          integer :: j
 
@@ -300,6 +319,7 @@ contains
             member%kind_of = findloc(record%kind%name == cell(j)%kind, .true., dim=1)
             if (cell(j)%kind == 'none') member%kind_of = left_out
             member%rigid = cell(j)%rigid_end
+            ! A column has no rigid end at the base.
             if (letter == 'C' .and. storey == 1) member%rigid(1) = 0.0_wp
             if (is_given(cell(j)%rigid_from)) member%rigid(1) = cell(j)%rigid_from
             if (is_given(cell(j)%rigid_to)) member%rigid(2) = cell(j)%rigid_to
@@ -307,8 +327,10 @@ contains
       end subroutine choose
    end subroutine add_cell
 
+   !> Hold the displacements (x, y, rotation) of a node that its support holds.
    subroutine hold(node, support)
       type(frame_node), intent(inout) :: node
+      !> 'free', 'roller', 'pinned' or 'fixed'
       character(len=*), intent(in) :: support
 
       node%held(1) = support == 'fixed' .or. support == 'pinned'
@@ -316,7 +338,7 @@ contains
       node%held(3) = support == 'fixed'
    end subroutine hold
 
-   !> Nodes by name: new ones, and additions to those of the grid.
+   !> Put in the nodes that are given by name: new ones, and additions to those of the grid.
    subroutine put_nodes(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
@@ -417,6 +439,7 @@ contains
       self%member = self%member(:self%members)
       do i = 1, self%members
          associate (member => self%member(i))
+            ! A kind that was not found has its message.
             if (member%kind_of < 1) cycle
             member%pinned = record%kind(member%kind_of)%ends == 'pinned'
             member%after_dead_load = record%kind(member%kind_of)%after_dead_load
@@ -429,11 +452,13 @@ contains
       end do
    end subroutine put_members
 
-   !> Springs between nodes and the ground, where 'base' means all nodes of floor 0, and in panels.
+   !> Put in springs between nodes and the ground, where 'base' means all nodes of floor 0, and springs in
+   !> panels.
    subroutine put_node_springs(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
+      !> Displacement (1: x, 2: y, 3: rotation) that springs of the groups shear, flexure, axial_spring resist
       integer, parameter :: direction(3) = [1, 3, 2]
       integer :: i, j, k
       logical :: any_node
@@ -473,7 +498,7 @@ contains
                                                      messages)
          end associate
       end do
-      ! Nodes that have one of their own keep it.
+      ! Nodes whose panel was given by name keep it when one is given for all.
       do i = 1, size(record%spring)
          if (record%spring(i)%panel == 'all') call put_panel(self, record%spring(i), messages)
       end do
@@ -482,6 +507,7 @@ contains
    !> A spring between the columns and the beams of a node; 'all' means all nodes where both meet.
    subroutine put_panel(self, given, messages)
       type(frame_parts), intent(inout) :: self
+      !> Spring of the panel, with the name of the node
       type(frame_spring), intent(in) :: given
       type(message_list), intent(inout) :: messages
       logical :: any_node
@@ -518,7 +544,7 @@ contains
       end if
    end subroutine put_panel
 
-   !> Members that are lost at a time.
+   !> Note the time at which members are lost.
    subroutine put_losses(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
@@ -532,13 +558,17 @@ contains
       end do
    end subroutine put_losses
 
-   !> Kinds of the members, once their lengths are known.
+   !> Give members the springs and stiffness of their kinds, and refuse lengths and loads that do not suit
+   !> them.
    subroutine put_kinds(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
+      !> Clear and whole length [m]; largest E A/l [N/m] and E I/l [N m] of members; stiffness of springs of
+      !> nodes along x, upward and in rotation
       real(wp) :: clear, whole, stiffest(2), held(3)
       logical :: reported(size(record%kind)), all_rigid
+      !> Direction nearest to the member: 1 is x, 2 is y
       integer :: i, along
 
       reported = .false.
@@ -564,6 +594,8 @@ contains
             if (.not. clear > 0.0_wp) cycle
             ! Along the member, and against its rotation.
             if (all_rigid) then
+               ! In bending a rigid member works against springs across it, at its ends, and against
+               ! rotations.
                stiffest = max(stiffest, [held(along), held(3 - along)*clear**2 + held(3)])
             else if (.not. (is_rigid(kind, record%spring) .or. is_strut(kind, record%spring))) then
                stiffest = max(stiffest, stiffness_of(kind, clear))
@@ -623,8 +655,10 @@ contains
    subroutine check_length(m, kind, clear, messages, reported)
       type(frame_member), intent(in) :: m
       type(kind_record), intent(in) :: kind
+      !> Clear length of the member [m]
       real(wp), intent(in) :: clear
       type(message_list), intent(inout) :: messages
+      !> Whether a message was added
       logical, intent(out) :: reported
 
       reported = .false.
@@ -635,7 +669,7 @@ contains
                         to_text(kind%length)//' m; make a kind for this length, or correct rigid_end')
    end subroutine check_length
 
-   !> The controlled node, whose displacement is that of the top.
+   !> Choose the node whose displacement is that of the top, and is controlled.
    subroutine choose_top(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
@@ -643,11 +677,13 @@ contains
       integer :: i, direction
 
       direction = merge(2, 1, record%control == 'y')
+      ! Of a building the top is the centre of its highest floor, unless a node is named: 0 says so.
       if (record%control_node == '' .and. self%plan%is_given()) return
       if (record%control_node == '') then
          do i = 1, size(self%node)
             if (self%node(i)%held(direction)) cycle
             if (self%top == 0) self%top = i
+            ! The first of the highest nodes
             if (self%node(i)%y > self%node(self%top)%y) self%top = i
          end do
          if (self%top == 0) call messages%add('frame: no node can move along '//trim(record%control)// &
@@ -656,6 +692,7 @@ contains
       end if
       call check_reference(record%control_node, [self%node%name], 'frame: control_node', 'node', messages)
       self%top = findloc(self%node%name == record%control_node, .true., dim=1)
+      ! A name that was not found has its message.
       if (self%top == 0) return
       if (self%node(self%top)%held(direction)) then
          call messages%add("frame: control_node = '"//trim(record%control_node)//"' cannot move along "// &
@@ -663,11 +700,13 @@ contains
       end if
    end subroutine choose_top
 
-   !> Shares of the lateral load; those of the first mode are found later, from the frame.
+   !> Set the shares of the nodes in the lateral load, by mass or mass times height; those of the first mode
+   !> are found later, from the frame.
    subroutine push(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
+      !> Mass along x of each node, of those that can move [kg]; height of the lowest node [m]
       real(wp) :: mass(size(self%node)), lowest
       logical :: has_mass
       integer :: i

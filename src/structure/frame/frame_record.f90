@@ -25,6 +25,8 @@ module rbs_structure_frame_frame_record
       'frame', 'plane', 'floor', 'node_load', 'member_kind', 'column_of', 'beam_of', 'infill', 'infill_of', &
       'node', 'member', 'loss']
 
+   ! Meaning, unit and bound of each component are stated by its key, in the `visit` procedures below.
+
    !> The vertical plane of nodes in a building, whose floors are rigid in plan: its angle from the x axis,
    !> counterclockwise, and its distance from the origin, positive where a counterclockwise turn of the floors
    !> moves it forward.
@@ -35,7 +37,7 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_plane
    end type plane_record
 
-   !> Mass and load of floors, 0: of all.
+   !> Mass and load of a floor, or of all floors where its number is 0.
    type, extends(visited_record), public :: floor_record
       integer :: floor = 0
       real(wp) :: mass = 0.0_wp, live_load = 0.0_wp, inertia = 0.0_wp
@@ -182,12 +184,14 @@ module rbs_structure_frame_frame_record
 
 contains
 
-   !> Make room for the values of a group.
+   !> Make room for the values of a group; `frame` itself is there once.
    subroutine open_group(self, group)
       class(frame_record), intent(inout) :: self
+      !> Name of the group, one of `frame_groups`
       character(len=*), intent(in) :: group
       type(cell_record) :: beam, infilled
 
+      ! The first group: no other is there yet.
       if (.not. allocated(self%floor)) then
          allocate (self%plane(0), self%floor(0), self%node_load(0), self%kind(0), self%column_of(0), &
                    self%beam_of(0), self%infill(0), self%infill_of(0), self%node(0), self%member(0), &
@@ -225,6 +229,7 @@ contains
    !> How many groups of a name were given.
    pure integer function count_of(self, group) result(number)
       class(frame_record), intent(in) :: self
+      !> Name of the group, one of `frame_groups`
       character(len=*), intent(in) :: group
 
       select case (group)
@@ -255,9 +260,10 @@ contains
       end select
    end function count_of
 
-   !> Present the keys of a group.
+   !> Present the keys of a group to a visitor, which reads, writes or lists them.
    subroutine visit_group(self, group, v, number)
       class(frame_record), intent(inout) :: self
+      !> Name of the group, one of `frame_groups`
       character(len=*), intent(in) :: group
       type(key_visitor), intent(inout) :: v
       !> Which of several; without it the last
@@ -294,6 +300,7 @@ contains
       end select
    end subroutine visit_group
 
+   !> The keys of a frame.
    subroutine visit_frame(self, v)
       class(frame_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -334,6 +341,7 @@ contains
                   'of_floors from_loads')
    end subroutine visit_frame
 
+   !> The keys of a plane.
    subroutine visit_plane(self, v)
       class(plane_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -348,6 +356,7 @@ contains
                  'by it which columns are one', optional=.true.)
    end subroutine visit_plane
 
+   !> The keys of a floor.
    subroutine visit_floor(self, v)
       class(floor_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -372,6 +381,7 @@ contains
                  'on the beams with a panel on one side')
    end subroutine visit_floor
 
+   !> The keys of a load on nodes.
    subroutine visit_node_load(self, v)
       class(node_load_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -383,6 +393,7 @@ contains
                  'the last group that fits counts')
    end subroutine visit_node_load
 
+   !> The keys of a kind of member.
    subroutine visit_kind(self, v)
       class(kind_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -427,6 +438,7 @@ contains
                  optional=.true.)
    end subroutine visit_kind
 
+   !> The keys of an infill.
    subroutine visit_infill(self, v)
       class(infill_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -444,6 +456,7 @@ contains
                  'drift of the panel at which it has this force')
    end subroutine visit_infill
 
+   !> The keys of a group that gives places of a grid their kind; an infill has neither halves nor rigid ends.
    subroutine visit_cell(self, v)
       class(cell_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -480,6 +493,7 @@ contains
                  'another one', optional=.true.)
    end subroutine visit_cell
 
+   !> The keys of a node.
    subroutine visit_node(self, v)
       class(node_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -506,6 +520,7 @@ contains
                   'displacement upward it shares')
    end subroutine visit_node
 
+   !> The keys of a member.
    subroutine visit_member(self, v)
       class(member_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -521,6 +536,7 @@ contains
                   'column, and whose axial force is its own')
    end subroutine visit_member
 
+   !> The keys of a loss.
    subroutine visit_loss(self, v)
       class(loss_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -529,9 +545,10 @@ contains
       call v%key('time', self%time, 's', any_number, 'time of the record from which on it carries nothing')
    end subroutine visit_loss
 
-   !> Dead load on the beam of a bay [N/m].
+   !> Dead load on the beam of a bay [N/m]: one value for all bays, or one for each.
    pure real(wp) function load_on(self, bay)
       class(floor_record), intent(in) :: self
+      !> Number of the bay, from the left
       integer, intent(in) :: bay
 
       load_on = 0.0_wp
@@ -546,9 +563,10 @@ contains
       if (is_loaded) is_loaded = any(abs(self%dead_load) > 0.0_wp)
    end function is_loaded
 
-   !> Whether a group is of a line, or bay, and a storey.
+   !> Whether a group is meant for a member of the grid, by line (or bay) and storey; 0 means all.
    pure logical function fits(self, line, storey, last)
       class(cell_record), intent(in) :: self
+      !> Line or bay, and storey, of the member
       integer, intent(in) :: line, storey
       !> Number of lines or bays
       integer, intent(in) :: last

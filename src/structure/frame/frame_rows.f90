@@ -6,7 +6,10 @@ submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_rows
 
 contains
 
+   !> Channels of a frame in a row, from `frame_channel` and `plan_channel`: those that the run asks for and
+   !> the frame has.
    module procedure channels
+      !> Whether a channel is kept, by its place in `frame_channel`
       logical :: held(size(frame_channel))
       integer :: kind, m
 
@@ -17,6 +20,7 @@ contains
       channel = frame_channel
       channel(2:4)%count = self%n
       channel(5:7)%count = m
+      ! Of the kinds shear, flexure and axial: deformations, then forces
       do kind = 1, 3
          held(6 + 2*kind:7 + 2*kind) = size(self%listed(kind)%spring) > 0
          channel(6 + 2*kind:7 + 2*kind)%count = size(self%listed(kind)%spring)
@@ -34,15 +38,18 @@ contains
       end associate
    end procedure channels
 
+   !> Fill a row with the values of `channels`, one after the other, from deformations and unknowns d.
    module procedure fill_row
       real(wp) :: f(self%springs), s(3)
       integer :: at, i, j, kind, m
 
       f = springs%forces(d)
+      ! Held displacements stay zero.
       row(1:3*self%n + 1) = 0.0_wp
       do i = 1, self%n
          row(1 + i) = self%along_x(i, d(self%springs + 1:))
          do j = 2, 3
+            ! Place among the unknowns, 0 if it is held
             associate (at => self%number(j, i))
                if (at > 0) row(1 + (j - 1)*self%n + i) = d(self%springs + at)
             end associate
@@ -57,10 +64,12 @@ contains
          row(at + m + i) = s(2)
          row(at + 2*m + i) = s(3)
          row(1) = row(1) + support_force(self, i, d, s)
+         ! In its second plane a column has the axial force of the first.
          if (self%plan%is_given()) then
             if (self%axial_of(i) > 0) row(at + i) = row(at + self%axial_of(i))
          end if
       end do
+      ! The base shear: supports of members and springs from the ground or, of a building, along the load
       row(1) = row(1) + ground_force(self, f)
       if (self%plan%is_given()) row(1) = self%base_force(d, f)
       if (contents%in_time .and. self%damped) row(1) = response%base_shear
@@ -95,7 +104,9 @@ contains
       type(frame_type), intent(in) :: self
       type(row_contents), intent(in) :: contents
       type(response_type), intent(in) :: response
+      !> Deformations of the springs and unknowns; forces of the springs
       real(wp), intent(in), contiguous :: d(:), f(:)
+      !> Values of `plan_channel`
       real(wp), intent(out) :: row(:)
       real(wp) :: moved(3)
       integer :: floor
@@ -113,6 +124,7 @@ contains
    !> Forces along x of the supports and of the springs from the ground in each plane [N].
    pure function plane_forces(self, d, f) result(force)
       type(frame_type), intent(in) :: self
+      !> Deformations of the springs and unknowns; forces of the springs
       real(wp), intent(in), contiguous :: d(:), f(:)
       real(wp) :: force(self%plan%planes()), s(3)
       integer :: i
@@ -120,6 +132,7 @@ contains
       force = 0.0_wp
       do i = 1, self%members
          associate (e => self%element(i), plane => self%plane(self%element(i)%node(1)))
+            ! Neither end is held.
             if (all(self%number(1, e%node) > 0)) cycle
             call self%member_forces(i, d, f, s)
             force(plane) = force(plane) + support_force(self, i, d, s)
@@ -136,20 +149,26 @@ contains
    !> Deformation and force of a spring; of a joint of layers rotation and moment, or opening and axial force.
    pure subroutine spring_response(self, kind, spring, d, f, deformation, force)
       type(frame_type), intent(in) :: self
-      !> Kind of response, and the spring; of a joint its first layer
+      !> Kind of response (shear, flexure or axial), and number of the spring; of a joint of layers its first
+      !> layer
       integer, intent(in) :: kind, spring
+      !> Deformations of the springs and unknowns; forces of the springs, of a joint axial force, then moment
       real(wp), intent(in), contiguous :: d(:), f(:)
+      !> [m, N] or [rad, N m]
       real(wp), intent(out) :: deformation, force
       real(wp) :: z(2)
 
       deformation = d(spring)
       force = f(spring)
+      ! A spring that is no first layer
       if (.not. self%heads(spring)) return
       z = self%joints%motion(self%joints%of(spring), d)
       deformation = merge(z(1), z(2), kind == axial)
       force = merge(f(spring), f(spring + 1), kind == axial)
    end subroutine spring_response
 
+   !> Base shear of a frame along x, of a building along the lateral load, from deformations d and forces f
+   !> [N].
    module procedure base_force
       real(wp) :: s(3)
       integer :: i
@@ -161,6 +180,7 @@ contains
       end if
       force = ground_force(self, f)
       do i = 1, self%members
+         ! Neither end is held.
          if (all(self%number(1, self%element(i)%node) > 0)) cycle
          call self%member_forces(i, d, f, s)
          force = force + support_force(self, i, d, s)
@@ -170,8 +190,9 @@ contains
    !> Force along x of the supports of a member [N].
    pure real(wp) function support_force(self, member, d, s) result(force)
       type(frame_type), intent(in) :: self
+      !> Number of the member
       integer, intent(in) :: member
-      !> Deformations of the springs (springs); axial force and moments of its ends
+      !> Deformations of the springs and unknowns; axial force and moments of its ends [N, N m]
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(in) :: s(3)
       integer :: j
@@ -179,6 +200,7 @@ contains
       force = 0.0_wp
       associate (e => self%element(member), x => d(self%springs + 1:))
          do j = 1, 2
+            ! An end that can move has no support along x.
             if (self%number(1, e%node(j)) > 0) cycle
             force = force - sum(s*e%to_basic(:, 3*j - 2))
             if (.not. self%axially_loaded) cycle
@@ -191,6 +213,7 @@ contains
    !> Force along x of the springs from the ground [N].
    pure real(wp) function ground_force(self, f) result(force)
       type(frame_type), intent(in) :: self
+      !> Forces of all springs (springs)
       real(wp), intent(in), contiguous :: f(:)
 
       force = sum(f(self%member_springs + 1:), mask=self%location(self%member_springs + 1:)%kind == shear)

@@ -70,7 +70,7 @@ module rbs_structure_frame_new_frame
       procedure :: opens
    end type frame_member
 
-   !> Motion of the ends by the opening of a joint.
+   !> Motion of the ends by the opening of a joint, in the first column.
    real(wp), parameter :: along_axis(3, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [3, 2])
 
 contains
@@ -80,6 +80,7 @@ contains
       type(frame_type), intent(out) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
+      !> `small` or `pdelta`
       integer, intent(in) :: kinematics
       !> Of a building; else of no planes
       type(floor_plan), intent(in) :: plan
@@ -89,6 +90,7 @@ contains
       !> Whether that is the one upward, not the one along x
       logical, intent(in), optional :: vertical
       type(spring_record), allocatable :: spring(:)
+      !> Direction of the control: 1 is x, 2 is y
       integer :: i, direction
 
       frame%kinematics = kinematics
@@ -101,10 +103,11 @@ contains
       frame%plan = plan
       frame%plane = node%plane
       frame%axial_of = member%axial_of
-      ! Distances of the nodes from a point on none of their axes: they differ between frames.
+      ! Distances of the nodes from a point on none of their axes. As a mark of the state, they differ between
+      ! frames.
       frame%length = [(hypot(node(i)%x + 1.0_wp/3.0_wp, node(i)%y + 0.7_wp), i=1, size(node))]
       frame%height = maxval(node%y) - minval(node%y)
-      ! A beam alone has none.
+      ! A beam alone has no height.
       if (.not. frame%height > 0.0_wp) frame%height = maxval(node%x) - minval(node%x)
       frame%total_height = frame%height
       call set_storeys(frame)
@@ -129,6 +132,7 @@ contains
          allocate (frame%arm(frame%coordinates), frame%constant_axial(springs), source=0.0_wp)
          direction = 1
          if (present(vertical)) direction = merge(2, 1, vertical)
+         ! The displacement of the top, as a row for the coordinates
          if (top > 0 .and. direction == 2) then
             frame%arm(springs + frame%number(2, top)) = 1.0_wp
          else if (top > 0) then
@@ -159,11 +163,13 @@ contains
       frame%is_still = frame%is_held
       frame%is_implicit = .true.
       frame%axially_loaded = kinematics == pdelta
+      ! Axial forces are known for all members, and count where they do second-order work.
       frame%axial_count = merge(size(member), 0, frame%axially_loaded)
       frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%member_springs, 1.0_wp)]
    end subroutine new_frame
 
-   !> Shares of the nodes in the drifts of the storeys.
+   !> Set the shares of the nodes in the drifts of the storeys: the mean of a floor over the height of the
+   !> storey.
    subroutine set_storeys(frame)
       type(frame_type), intent(inout) :: frame
       real(wp) :: height
@@ -183,7 +189,7 @@ contains
       end do
    end subroutine set_storeys
 
-   !> Heights of the storeys of a building, and in each plane the node of the base.
+   !> Set the heights of the storeys of a building, and the node of the base in each plane.
    subroutine set_levels(frame)
       type(frame_type), intent(inout) :: frame
       real(wp) :: level(0:frame%storeys)
@@ -195,11 +201,13 @@ contains
                      i=1, frame%plan%planes())]
    end subroutine set_levels
 
-   !> Number the unknowns along the order of the nodes.
+   !> Number the unknowns along the order of the nodes, and find the half-width of the band.
    subroutine number_unknowns(frame, node, member)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
+      !> Nodes that are coupled; order of the nodes; node that has the unknown for x, y and rotation (nodes,
+      !> 3)
       integer :: pair(2, size(member) + size(node)), order(size(node)), leader(size(node), 3)
       integer :: i, j, number(most_columns), width
 
@@ -215,6 +223,7 @@ contains
       end do
       if (frame%plan%is_given()) then
          allocate (frame%plan%number(3, frame%storeys), source=0)
+         ! Rigid floors couple all nodes of a floor.
          call order_downward(size(node), node%y, order)
       else
          call order_nodes(size(node), pair, order)
@@ -226,7 +235,8 @@ contains
          do j = 1, 3
             associate (of => leader(order(i), j))
                if (j == 1 .and. node(of)%follows_floor()) cycle
-               ! Numbered behind all nodes that it moves, a floor makes the rows of none of them long.
+               ! A node that others move with is numbered at the last of these, which keeps the rows of all of
+               ! them short.
                if (node(of)%held(j) .or. any(leader(order(i + 1:), j) == of)) cycle
                frame%unknowns = frame%unknowns + 1
                frame%number(j, of) = frame%unknowns
@@ -237,6 +247,7 @@ contains
             frame%unknowns = frame%unknowns + 1
             frame%beam_rotation(order(i)) = frame%unknowns
          end if
+         ! A floor is numbered at the last of its nodes.
          if (.not. node(order(i))%follows_floor()) cycle
          associate (storey => node(order(i))%storey)
             if (any(node(order(i + 1:))%follows_floor() .and. node(order(i + 1:))%storey == storey)) cycle
@@ -259,15 +270,18 @@ contains
          if (any(number > 0)) frame%half_width = max(frame%half_width, maxval(number) &
                                                      - minval(number, mask=number > 0))
       end do
+      ! A panel couples two unknowns, whatever the members.
       if (any(frame%beam_rotation > 0)) frame%half_width = max(frame%half_width, 1)
    end subroutine number_unknowns
 
-   !> Let a node move with its floor: unknowns and their shares.
+   !> Let a node move with its floor: note the unknowns that move it along x, and their shares.
    subroutine follow_floor(frame, node, floor)
       type(frame_type), intent(inout) :: frame
+      !> Number of the node
       integer, intent(in) :: node
-      !> Numbers of its unknowns (3)
+      !> Numbers of U, V and Theta of the floor among the unknowns (3)
       integer, intent(in) :: floor(:)
+      !> Number of unknowns that move the node
       integer :: j, moving, at(3)
 
       moving = 0
@@ -284,11 +298,11 @@ contains
       frame%also(:, node) = at(2:)
    end subroutine follow_floor
 
-   !> Both planes of a column may open: number the part of its elongation that is of the second.
+   !> Where both planes of a column may open, number the part of its elongation that is of the second plane.
    subroutine number_partings(frame, member, node)
       type(frame_type), intent(inout) :: frame
       type(frame_member), intent(in) :: member(:)
-      !> Whose columns from below are meant
+      !> The node at which the columns end that are meant
       integer, intent(in) :: node
       integer :: i
 
@@ -300,16 +314,17 @@ contains
       end do
    end subroutine number_partings
 
-   !> Numbers of the displacements of the ends of a member: beams turn with the other side of a panel. In a
-   !> building further unknowns of its floors, and the parting of its elongation, follow.
+   !> Numbers of the displacements of the ends of a member among the unknowns: beams turn with the other side
+   !> of a panel. In a building further unknowns of its floors, and the parting of its elongation, follow.
    subroutine find_numbers(frame, node, member, of, number, width, end_of, factor)
       type(frame_type), intent(in) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member
       !> Number of the member
       integer, intent(in) :: of
+      !> The numbers, 0 where a support holds one, and how many there are
       integer, intent(out) :: number(most_columns), width
-      !> See `follow_floor`
+      !> See `follow_floor` of `frame_element`
       integer, intent(out), optional :: end_of(most_columns)
       real(wp), intent(out), optional :: factor(most_columns)
       integer :: i, j, follows(most_columns), parting
@@ -344,6 +359,7 @@ contains
             end do
          end if
       end associate
+      ! The unknown is in both planes of the column.
       parting = frame%parting(of)
       if (any(frame%axial_of == of)) parting = maxval(frame%parting, mask=frame%axial_of == of)
       if (parting > 0) call add(parting, 0, 1.0_wp)
@@ -352,7 +368,9 @@ contains
 
    contains
 
+      !> Append an unknown that moves the column of an x by a factor.
       subroutine add(unknown, column, factor)
+         !> Number of the unknown; column of x that it follows from, 0: none; its share in that
          integer, intent(in) :: unknown, column
          real(wp), intent(in) :: factor
 
@@ -363,25 +381,27 @@ contains
       end subroutine add
    end subroutine find_numbers
 
-   !> Whether its displacement along x is that of its floor.
+   !> Whether the displacement of a node along x is that of its floor.
    elemental logical function follows_floor(self)
       class(frame_node), intent(in) :: self
 
       follows_floor = self%plane > 0 .and. self%storey > 0
    end function follows_floor
 
-   !> Whether it has springs that open.
+   !> Whether a member has springs that open.
    elemental logical function opens(self)
       class(frame_member), intent(in) :: self
 
       opens = any(self%kind == axial .or. self%kind == layer)
    end function opens
 
-   !> Add a motion (U, V, Theta) of a floor to a row of the unknowns.
+   !> Add shares of the motion (U, V, Theta) of a floor to a row of the unknowns.
    pure subroutine put_on_floor(frame, floor, share, row)
       type(frame_type), intent(in) :: frame
+      !> Number of the floor; shares of U, V and Theta
       integer, intent(in) :: floor
       real(wp), intent(in) :: share(3)
+      !> (unknowns)
       real(wp), intent(inout) :: row(:)
       integer :: j
 
@@ -392,18 +412,19 @@ contains
       end do
    end subroutine put_on_floor
 
-   !> A member between two nodes is a beam, if it is flatter than steep.
+   !> Whether a member between two nodes is a beam: it is flatter than 45 degrees.
    pure logical function is_beam(a, b)
       type(frame_node), intent(in) :: a, b
 
       is_beam = abs(b%x - a%x) > abs(b%y - a%y)
    end function is_beam
 
-   !> Masses and loads of the nodes, and the springs from the ground.
+   !> Put masses and loads of the nodes on the unknowns, and set the springs from the ground.
    subroutine set_ground(frame, node, member, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
+      !> Springs of the frame, those from the ground behind the others
       type(spring_record), intent(inout) :: spring(:)
       integer, parameter :: kind_of(3) = [shear, axial, flexure]
       character(len=2), parameter :: along(3) = ['x_', 'y_', 't_']
@@ -419,6 +440,7 @@ contains
       end do
       last = frame%member_springs
       do i = 1, size(node)
+         ! Along x a node on a rigid floor has no unknown, see `set_floors`.
          do j = merge(2, 1, node(i)%follows_floor()), 3
             associate (at => frame%number(j, i))
                if (at == 0) cycle
@@ -456,7 +478,7 @@ contains
       frame%pattern%last = frame%unknowns
    end subroutine set_ground
 
-   !> Masses of the floors, at their centres of mass, and loads on them.
+   !> Put masses on the floors, at their centres of mass, and loads on them.
    subroutine set_floors(frame, node)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
@@ -495,10 +517,11 @@ contains
       end do
    end subroutine set_floors
 
-   !> Joints of layers, in the order of the springs.
+   !> Number the joints of layers, in the order of the springs.
    subroutine number_joints(frame, member)
       type(frame_type), intent(inout) :: frame
       type(frame_member), intent(in) :: member(:)
+      !> Joint of each spring, 0 for none; distance of a layer from the middle of its joint [m]
       integer :: of(frame%springs), at, i, j, joints
       real(wp) :: y(frame%springs)
 
@@ -522,12 +545,14 @@ contains
       call frame%joints%create(of, y, frame%springs + frame%unknowns)
    end subroutine number_joints
 
-   !> Geometry of the elements, their springs, and forces of the dead load in them.
+   !> Set the geometry of the elements, their springs, and the forces of the dead load in them.
    subroutine set_elements(frame, node, member, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
+      !> Springs of the frame, in which those of the members are set
       type(spring_record), intent(inout) :: spring(:)
+      !> Unit vectors along the member and across it; rotation of the chord per displacement of the ends
       real(wp) :: axis(2), across(2), chord(6), factor(most_columns)
       integer :: i, j, before, end_of(most_columns)
 
@@ -567,7 +592,7 @@ contains
                e%opening = count(m%kind == axial)
                e%bending = size(m%kind) - e%opening
                e%rest_along = m%axial/clear
-               ! The column is elastic along its axis once.
+               ! A column in two planes is elastic along its axis once, in the first.
                if (frame%parting(i) > 0) e%rest_along = 0.0_wp
                e%flexural_rigidity = m%bending
                e%shear_rigidity = m%sliding
@@ -589,12 +614,13 @@ contains
       end do
    end subroutine set_elements
 
-   !> A column in two planes has one elongation: that of joints in the second plane is an unknown, by which
-   !> the first is less; without such joints the second has none.
+   !> A column in two planes has one elongation. If joints in both planes open, the part of the second plane
+   !> is an unknown, which the elongation of the first plane is less by; else the second plane has none.
    pure subroutine share_elongation(frame, i, e)
       type(frame_type), intent(in) :: frame
       !> Number of the member, and its element
       integer, intent(in) :: i
+      !> Its row of elongations is changed here
       type(frame_element), intent(inout) :: e
 
       if (frame%axial_of(i) > 0) e%to_basic(1, :) = 0.0_wp
@@ -605,11 +631,13 @@ contains
       end if
    end subroutine share_elongation
 
-   !> The nearest flexural spring, or joint of layers, of a member: its work weakens a shear spring.
+   !> Let the nearest flexural spring, or joint of layers, of a member be the one whose work weakens a shear
+   !> spring.
    pure subroutine assign_work_source(m, spring, before, location)
       type(frame_member), intent(in) :: m
-      !> Number in the member, and of springs before the member
+      !> Number of the shear spring in the member, and of the springs before the member
       integer, intent(in) :: spring, before
+      !> Place of the shear spring, in which the source is set
       type(spring_location), intent(inout) :: location
       integer :: nearest
 
@@ -623,10 +651,12 @@ contains
       end associate
    end subroutine assign_work_source
 
-   !> A panel is an element of one spring, which "opens" by the rotation of the columns against the beams.
+   !> Set the panels: each is an element of one spring, which "opens" by the rotation of columns against
+   !> beams.
    subroutine set_panels(frame, node, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
+      !> Springs of the frame, in which those of the panels are set
       type(spring_record), intent(inout) :: spring(:)
       integer :: i, element, at
 
@@ -654,7 +684,8 @@ contains
       end do
    end subroutine set_panels
 
-   !> The springs of each kind; joints of layers rotate and open.
+   !> List the springs of each kind for rows; a joint of layers is both in flexure and in axial, as it rotates
+   !> and opens.
    subroutine list_springs(frame)
       type(frame_type), intent(inout) :: frame
       integer :: i, kind
@@ -666,10 +697,11 @@ contains
       end do
    end subroutine list_springs
 
-   !> Joints of an element: its springs, those of layers together.
+   !> Set the joints of an element: its springs, those of layers together, and the motion of the ends by them.
    subroutine set_joints(e, m, clear, frame)
       type(frame_element), intent(inout) :: e
       type(frame_member), intent(in) :: m
+      !> Clear length [m]; frame whose joints of layers are numbered
       real(wp), intent(in) :: clear
       type(frame_type), intent(in) :: frame
       real(wp) :: moment(3)
@@ -687,6 +719,7 @@ contains
             of%spring = e%inner + 1
             e%inner = e%inner + merge(1, 2, of%is_single)
             if (.not. of%is_single) of%motion = frame%joints%before + 2*frame%joints%of(e%before + i) - 1
+            ! Moment at the position by the moments of the two ends, which turn the same way
             moment = [0.0_wp, m%position(i) - 1.0_wp, m%position(i)]
             select case (m%kind(i))
             case (layer)
@@ -708,15 +741,18 @@ contains
    subroutine put_load(frame, m, i, axis, clear)
       type(frame_type), intent(inout) :: frame
       type(frame_member), intent(in) :: m
+      !> Number of the member
       integer, intent(in) :: i
+      !> Unit vector from its first to its last node; clear length [m]
       real(wp), intent(in) :: axis(2), clear
       real(wp) :: down, per_length, share, lever, over_node
       integer :: j, k, at
 
       if (.not. abs(m%load) > 0.0_wp) return
-      ! Downward, and its part across the member, both per length of it.
+      ! Per length of the member: the load downward, then its part across it
       per_length = m%load*abs(axis(1))
       down = per_length*axis(1)
+      ! Moments and shear forces of a beam on two supports, at the springs
       do j = 1, size(m%kind)
          share = m%position(j)
          at = frame%element(i)%before + j
@@ -726,6 +762,7 @@ contains
          if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
       end do
       if (.not. m%pinned) frame%element(i)%load_across = down
+      ! Half of the load for each node; the rigid ends have a lever to it.
       do k = 1, 2
          over_node = per_length*m%rigid(k)
          at = frame%number(2, m%node(k))
@@ -737,9 +774,11 @@ contains
 
    contains
 
-      !> The moment in a joint of layers, as two forces on its outermost ones.
+      !> The moment of a joint of layers, as a couple of forces in its outermost layers.
       subroutine bend_layers(moment, y, joint_numbers, e)
+         !> Moment [N m]; distances of the layers of the member [m]
          real(wp), intent(in) :: moment, y(:)
+         !> Whether a layer is of this joint
          logical, intent(in) :: joint_numbers(:)
          type(frame_element), intent(inout) :: e
 

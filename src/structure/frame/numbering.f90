@@ -12,6 +12,7 @@ contains
    !> level in the order of its neighbours before (A. George and J. Liu, Computer Solution of Large Sparse
    !> Positive Definite Systems, 1981).
    pure subroutine order_nodes(nodes, pair, order)
+      !> Number of nodes
       integer, intent(in) :: nodes
       !> Nodes that are coupled (2, pairs)
       integer, intent(in) :: pair(:, :)
@@ -26,7 +27,7 @@ contains
       numbered = 0
       do while (numbered < nodes)
          first = minloc(degree, dim=1, mask=.not. is_numbered)
-         ! Twice to the far end of the part.
+         ! Going twice to the far end of the part finds an end of a longest way.
          do i = 1, 2
             last = numbered
             call visit(nodes, start, neighbour, degree, is_numbered, first, order, last)
@@ -38,12 +39,14 @@ contains
       order = order(nodes:1:-1)
    end subroutine order_nodes
 
-   !> Nodes floor by floor from the top down: rigid floors couple all of theirs, and rows of the band are
-   !> shorter so than from the base up.
+   !> Order of the nodes floor by floor from the top down: rigid floors couple all nodes of a floor, and rows
+   !> of the band are shorter so than from the base up.
    pure subroutine order_downward(nodes, y, order)
+      !> Number of nodes
       integer, intent(in) :: nodes
       !> Heights (nodes)
       real(wp), intent(in) :: y(nodes)
+      !> The nodes one after the other (nodes)
       integer, intent(out) :: order(nodes)
       logical :: is_numbered(nodes)
       integer :: i
@@ -55,12 +58,16 @@ contains
       end do
    end subroutine order_downward
 
-   !> The neighbours of each node: those of node i from start(i) on.
+   !> The neighbours of each node: those of node i stand from start(i) to start(i + 1) - 1.
    pure subroutine list_neighbours(nodes, pair, start, neighbour)
+      !> Number of nodes, and pairs of them that are coupled (2, pairs)
       integer, intent(in) :: nodes, pair(:, :)
+      !> First place of each node in the list, and the list; start(nodes + 1) is its end plus one
       integer, intent(out) :: start(nodes + 1), neighbour(2*size(pair, 2))
       integer :: i, j
 
+      ! Count the neighbours, sum them to the ends of the ranges, and fill these backward: `start` moves to
+      ! the begin.
       start = 0
       do i = 1, size(pair, 2)
          do j = 1, 2
@@ -81,10 +88,14 @@ contains
       end do
    end subroutine list_neighbours
 
-   !> Add a node and all that it is connected with, the nearest first and of these those with few neighbours.
+   !> Append a node and all that it is connected with to the order, the nearest first and of these those with
+   !> few neighbours.
    pure subroutine visit(nodes, start, neighbour, degree, is_numbered, first, order, last)
+      !> Number of nodes; neighbours as in `list_neighbours`, and their numbers; the node to begin with
       integer, intent(in) :: nodes, start(nodes + 1), neighbour(:), degree(nodes), first
+      !> Nodes that are left out, as they are in the order already
       logical, intent(in) :: is_numbered(nodes)
+      !> The order, filled up to `last`
       integer, intent(inout) :: order(nodes), last
       logical :: is_seen(nodes)
       integer :: at, begin, i, j
@@ -116,6 +127,7 @@ contains
 
    contains
 
+      !> Whether a node has fewer neighbours than another one or, with as many, the lower number.
       pure logical function comes_before(node, other)
          integer, intent(in) :: node, other
 

@@ -35,6 +35,7 @@ module rbs_structure_frame_plan
 
 contains
 
+   !> Whether it is a building, which has planes.
    pure logical function is_given(self)
       class(floor_plan), intent(in) :: self
 
@@ -51,6 +52,7 @@ contains
 
    !> Cosine and sine of an angle in degrees, exact where they are 0 or 1.
    pure function cosine_sine(degrees) result(pair)
+      !> Angle [degrees]
       real(wp), intent(in) :: degrees
       real(wp) :: pair(2), rest, turned(2)
       integer :: quarters
@@ -64,15 +66,18 @@ contains
       end do
    end function cosine_sine
 
-   !> Hold what no plane resists. Which floor is free to move, or to turn, in another way; 0: none.
+   !> Hold what no plane resists, and find a floor that is free to move, or to turn, in another way; 0: none.
    pure subroutine hold_free(self, free)
       class(floor_plan), intent(inout) :: self
+      !> Number of that floor
       integer, intent(out) :: free
+      !> Shares of the planes on a floor; those of the plane that is taken out, over its pivot; largest r [m]
       real(wp) :: row(3, size(self%is_there, 1)), part(3), size_of_arms
       integer :: i, j, pivot
 
       self%held = [(.not. any(abs(self%share(i, :, :)) > no_share*maxval(abs(self%share(i, :, :))) .and. &
                               self%is_there), i=1, 3)]
+      ! Gaussian elimination on each floor; left early, the loop has the free floor in `free`.
       do free = 1, size(self%is_there, 2)
          row = self%share(:, :, free)
          size_of_arms = maxval(abs(row(3, :)))
@@ -92,11 +97,12 @@ contains
       free = 0
    end subroutine hold_free
 
-   !> U, V and Theta of a floor; those of the ground are zero.
+   !> U, V and Theta of a floor [m, m, rad]; those of the ground are zero.
    pure function motion(self, floor, x) result(moved)
       class(floor_plan), intent(in) :: self
+      !> Number of the floor, 0 for the ground
       integer, intent(in) :: floor
-      !> (unknowns)
+      !> Unknowns, or changes of them (unknowns)
       real(wp), intent(in) :: x(:)
       real(wp) :: moved(3)
       integer :: j
@@ -108,7 +114,7 @@ contains
       end do
    end function motion
 
-   !> Forces on the floors alone.
+   !> Forces on the floors alone: those on other unknowns are set to zero.
    pure function on_floors(self, force) result(of_floors)
       class(floor_plan), intent(in) :: self
       !> (unknowns)
@@ -124,7 +130,7 @@ contains
       of_floors = merge(force, 0.0_wp, is_of_floor)
    end function on_floors
 
-   !> Rotary inertia of all floors [kg m2].
+   !> Sum of the rotary inertias of all floors [kg m2].
    pure real(wp) function turning_mass(self, inertias) result(inertia)
       class(floor_plan), intent(in) :: self
       !> (unknowns)
@@ -135,10 +141,10 @@ contains
                     mask=self%number(3, :) > 0)
    end function turning_mass
 
-   !> Angular momentum of a motion about the centres of mass.
+   !> Angular momentum of a motion, the sum of those of the floors about their centres of mass.
    pure real(wp) function turning_momentum(self, inertias, x) result(momentum)
       class(floor_plan), intent(in) :: self
-      !> (unknowns)
+      !> Masses and rotary inertias; displacements or velocities (unknowns)
       real(wp), intent(in) :: inertias(:), x(:)
       real(wp) :: moved(3)
       integer :: i

@@ -15,7 +15,8 @@ module rbs_structure_frame_plan_parts
 
 contains
 
-   !> Planes of a building, and what its nodes and floors share.
+   !> Put nodes on the planes of a building, and lay out its floors; refuse what only a planar frame can have,
+   !> or only a building.
    subroutine put_planes(nodes, plan, on_grid, record, messages)
       type(frame_node), intent(inout) :: nodes(:)
       type(floor_plan), intent(inout) :: plan
@@ -64,7 +65,7 @@ contains
       call lay_floors(nodes, plan, record, messages)
    end subroutine put_planes
 
-   !> Planes of the nodes, and those that they rise with.
+   !> Put nodes on their planes, and note the nodes that they rise with.
    subroutine put_on_planes(nodes, record, messages)
       type(frame_node), intent(inout) :: nodes(:)
       type(frame_record), intent(in) :: record
@@ -84,6 +85,7 @@ contains
             if (given%rises_with == '') cycle
             call check_reference(given%rises_with, [nodes%name], name//': rises_with', 'node', messages)
             with = findloc(nodes%name == given%rises_with, .true., dim=1)
+            ! Names that were not found have their messages.
             if (with == 0) cycle
             if (with == number .or. record%node(findloc(record%node%name == given%rises_with, .true., &
                                                         dim=1))%rises_with /= '') then
@@ -96,12 +98,14 @@ contains
       end do
    end subroutine put_on_planes
 
-   !> Masses of the floors, and the shares of their motion in that of each plane.
+   !> Lay out the floors: their masses, and the shares of their motion in that of each plane.
    subroutine lay_floors(nodes, plan, record, messages)
       type(frame_node), intent(in) :: nodes(:)
       type(floor_plan), intent(inout) :: plan
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
+      !> Number of a floor that is free to move; direction of a plane; centres of mass of the floors (2,
+      !> floors) [m]
       integer :: i, j, free
       real(wp) :: along(2)
       real(wp), allocatable :: centre(:, :)
@@ -161,12 +165,13 @@ contains
       end if
    end subroutine lay_floors
 
-   !> Columns in two planes.
+   !> Note columns that stand in two planes: the member of the second names that of the first.
    subroutine put_second_planes(nodes, members, record, messages)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(inout) :: members(:)
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
+      !> Numbers of the member, and of the one that is the same column in the first plane
       integer :: i, number, with
       logical :: is_lost
 
@@ -176,6 +181,7 @@ contains
             call check_reference(given%axial_of, [members%name], name//': axial_of', 'member', messages)
             number = findloc(members%name == given%name, .true., dim=1)
             with = findloc(members%name == given%axial_of, .true., dim=1)
+            ! A name that was not found has its message.
             if (with == 0) cycle
             if (with == number .or. record%member(with)%axial_of /= '' .or. &
                 any(members(:number - 1)%axial_of == with)) then
