@@ -166,6 +166,7 @@ contains
          next(1) = at(1) + index(request%statement(at(1):), after)
          ! A watch is six numbers.
          next(2:) = at(2:) + nint(counts(3*number - 2:3*number)*[1, 6, 1])
+         ! Without the mark `after` at its end
          call structure_from_statements(request%statement(at(1):next(1) - 2), &
                                      request%number(at(2):next(2) - 1), column%structure, begin, case, error)
          column%watch = watches_of(watches(at(3):next(3) - 1))

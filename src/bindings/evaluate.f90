@@ -235,6 +235,7 @@ contains
          do i = 2, size(matrices%unknown)
             answer%text = answer%text//new_line('a')//trim(matrices%unknown(i))
          end do
+         ! Columns here are rows in Python.
          answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
                                 transpose(matrices%geometric), transpose(matrices%damping)], &
                                [size(matrices%unknown), 4*size(matrices%unknown)])
@@ -271,6 +272,7 @@ contains
       do i = 1, frame%member_springs
          if (frame%location(i)%kind /= layer) then
             group = kinds(frame%location(i)%kind)
+            ! Springs of panels come last.
             if (i > frame%member_springs - count(frame%beam_rotation > 0)) group = 'panel'
             call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
          else if (frame%heads(i)) then

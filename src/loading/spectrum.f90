@@ -111,7 +111,7 @@ contains
       peak(1) = max(peak(1), abs(z(1)))
       peak(2) = max(peak(2), abs(z(2)))
       peak(3) = max(peak(3), abs(total1))
-      ! Where a rate changes its sign the peak is within the step.
+      ! Where a rate changes its sign the peak is within the step: that of the cubic by both ends.
       if (old(2)*z(2) < 0.0_wp) peak(1) = max(peak(1), abs(largest_of([old(1), z(1), old(2), z(2)])))
       if (x0*x1 < 0.0_wp) peak(2) = max(peak(2), abs(largest_of([old(2), z(2), x0, x1])))
       if (slope0*slope1 < 0.0_wp) then

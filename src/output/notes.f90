@@ -320,6 +320,7 @@ contains
       do i = 1, size(parts%member)
          associate (m => parts%member(i), a => parts%node(parts%member(i)%node(1)), &
                     b => parts%node(parts%member(i)%node(2)))
+            ! Columns at the foot end in a node that is held upward.
             if (m%after_dead_load .or. m%pinned .or. .not. (a%held(2) .or. b%held(2))) cycle
             if (abs(a%y - b%y) < abs(a%x - b%x)) cycle
             length = hypot(a%x - b%x, a%y - b%y) - sum(m%rigid)
@@ -378,6 +379,7 @@ contains
       do i = 1, frame%members
          associate (e => frame%element(i))
             if (.not. (abs(e%load_across) > 0.0_wp .and. e%flexural_rigidity > 0.0_wp)) cycle
+            ! The axis of the member is to_basic(1, 4:5): its slope times the load across is the load along.
             share(i) = abs(e%load_across*e%to_basic(1, 5)/e%to_basic(1, 4))*e%length**3 &
                        /(pi**2*e%flexural_rigidity)
          end associate

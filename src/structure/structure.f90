@@ -522,6 +522,7 @@ contains
 
       allocate (stiffness(self%half_width + 1, self%unknowns), source=0.0_wp)
       call self%add_stiffness(self%initial_stiffness, self%initial_tangent, stiffness)
+      ! Without signals the constant axial forces are left.
       if (axial) then
          allocate (geometric(self%half_width + 1, self%unknowns), source=0.0_wp)
          at_rest = 0.0_wp

@@ -177,7 +177,8 @@ contains
       end do
    end function second_order_energy
 
-   !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
+   !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j); B gives deformations
+   !> of the joints from displacements of the bodies.
    pure subroutine add_joint_stiffness(n, kinds, lower, upper, k, band)
       !> Number of bodies, and of joints
       integer, intent(in) :: n
@@ -238,6 +239,7 @@ contains
          t = 2*i
          band(1, t) = band(1, t) - axial(i)
          if (i == 1) cycle
+         ! -b u_i th_{i-1}: the slip u_i holds displacement and rotation of both bodies.
          force = axial(n + i)
          band(2, t - 3) = band(2, t - 3) + force
          band(1, t - 2) = band(1, t - 2) + 2.0_wp*force*upper(max(i - 1, 1))

@@ -176,7 +176,8 @@ contains
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
    end subroutine forces
 
-   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
+   !> Forces and moments about the centroids from the forces f of the joints and the loads p, -B' f + p; B
+   !> gives deformations of the joints from displacements of the bodies.
    pure subroutine body_forces(n, kinds, lower, upper, f, lateral, axial_load, weight, adds, g)
       !> Number of bodies, and of joints
       integer, intent(in) :: n
@@ -250,7 +251,8 @@ contains
                     + load(vertical)*self%lifted_joint(self%location(spring)%index)
    end function axial_force
 
-   !> Add B' diag(k) B of the springs to a lower band; a chain does not use `tangent`.
+   !> Add B' diag(k) B of the springs to a lower band; B gives deformations of the joints from displacements
+   !> of the bodies. A chain does not use `tangent`.
    subroutine add_stiffness(self, k, tangent, band)
       class(column_type), intent(in) :: self
       !> Stiffness of the springs by kind: slips, relative rotations, openings (springs)
@@ -611,7 +613,7 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       !> Values of `channels` without those of all structures
       real(wp), intent(out), contiguous :: row(:)
-      ! m springs, n joints; place of the last value that is filled
+      ! Place of the last value that is filled; m springs, n joints
       integer :: at, i, m, n
 
       m = size(d)
@@ -625,6 +627,7 @@ contains
       at = 2*m + 1
       if (contents%in_time) then
          if (self%damped) then
+            ! Force n + 1 is the moment of the lowest joint.
             row(at + 1) = response%base_shear
             row(at + 2) = response%f(n + 1)
             ! Damping of the masses acts against the ground too, with its moment about the base.

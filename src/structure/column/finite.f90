@@ -58,7 +58,7 @@ contains
       class(finite_chain_type), intent(in) :: self
       !> Deformations of the joints by kind and their velocities, signals of the loads
       real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
-      !> Number of axial forces that do second-order work beside the equations: 0, as exact rotations hold it
+      !> Number of axial forces with second-order terms of their own: 0, as exact rotations have them already
       integer, intent(in) :: pressing
       !> It holds the forces of the springs and gets the accelerations
       type(motion_result), intent(inout) :: result
@@ -349,6 +349,7 @@ contains
       integer, intent(in) :: i
       !> On entry body i - 1, at rest on the ground for i = 1
       type(moving_body), intent(inout) :: body
+      !> Velocities along t and e: first of the bottom against the body below, then from the bottom upward
       real(wp) :: along_t, along_e, bottom(2)
 
       call rotate(column, q, i, body)

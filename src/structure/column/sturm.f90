@@ -180,6 +180,7 @@ contains
          d(2, i) = half*self%joint(2, i)
          force = force*(self%k(1, i)*self%joint(1, i)) + self%joint(6, i)*d(2, i)
          moment = moment + self%joint(5, i)*d(1, i) + self%joint(7, i)*d(2, i)
+         ! The support of a held body takes the moment.
          if (self%held .and. i == self%n) moment = 0.0_wp
       end do
       top = 0.0_wp
@@ -190,6 +191,7 @@ contains
                     c22 => self%joint(7, i))
             d(2, i) = d(2, i) + (c21*top + c22*turned)*p2
             d(1, i) = d(1, i) + (t11*top + c12*turned + t12*d(2, i))*p1
+            ! The joint of a held body turns by minus the rotation below.
             if (self%held .and. i == self%n) d(2, i) = -turned
             turned = turned + d(2, i)
             top = top + d(1, i) + (self%lower(i) + self%upper(i))*turned

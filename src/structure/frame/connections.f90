@@ -60,7 +60,7 @@ contains
       end do
    end subroutine check_floors
 
-   !> The nodes in which members end.
+   !> Whether members end in each of the nodes.
    pure function end_nodes(nodes, members, beams, unpinned, dead_load) result(ends)
       type(frame_node), intent(in) :: nodes(:)
       type(frame_member), intent(in) :: members(:)

@@ -27,6 +27,7 @@ contains
       real(wp) :: q(3)
       integer :: k
 
+      ! A panel is between two unknowns: number 3 turns its columns, number 6 its beams.
       if (e%is_panel) then
          associate (b => e%from_unknowns, at => e%unknown)
             q = [b(1, 3)*x(at(3)) + b(1, 6)*x(at(6)), 0.0_wp, 0.0_wp]
@@ -95,7 +96,7 @@ contains
       !> Number of springs of the element, and their present stiffness
       integer, intent(in) :: springs
       real(wp), intent(in) :: k(springs)
-      !> On entry that of the last call
+      !> On entry the tangent of the last call, if there was one
       type(series_tangent), intent(inout) :: tangent
       real(wp) :: change
       integer :: j, spared
@@ -113,8 +114,8 @@ contains
       tangent%k0(:e%inner) = e%initial
       tangent%k0(e%inner + 1:) = abs(tangent%k(e%inner + 1:))
       spared = 0
-      ! Under tension a rest that takes off flexibility of springs is none of its own; beyond Euler's load
-      ! it is.
+      ! Under tension the elastic rest only takes off flexibility of springs: it has a negative stiffness, and
+      ! softens nothing. Beyond Euler's load a negative stiffness counts.
       if (allocated(e%rest) .and. .not. e%compression > 0.0_wp) spared = count(e%rest < 0.0_wp)
       call tangent%condense(e%condensed(), e%weight, spared)
    end subroutine set_tangent
@@ -213,7 +214,8 @@ contains
       end do
    end subroutine turn_pairs
 
-   !> Add the forces on the unknowns that axial force and end moments of an element are in equilibrium with.
+   !> Add B' s of an element to forces on the unknowns; a caller that wants the forces of the element on them
+   !> gives -s.
    pure subroutine add_end_forces(e, s, g)
       type(frame_element), intent(in) :: e
       !> Axial force [N], moments of the first and the last end [N m]
@@ -222,6 +224,7 @@ contains
       real(wp), intent(inout) :: g(:)
       integer :: k
 
+      ! A panel is between two unknowns: number 3 turns its columns, number 6 its beams.
       if (e%is_panel) then
          g(e%unknown(3)) = g(e%unknown(3)) + s(1)*e%from_unknowns(1, 3)
          g(e%unknown(6)) = g(e%unknown(6)) + s(1)*e%from_unknowns(1, 6)

@@ -270,6 +270,7 @@ contains
       real(wp), intent(inout) :: row(:)
       integer :: j
 
+      ! In a building x follows from up to three unknowns of the floor, by shares; 0: a support holds it.
       associate (at => self%number(1, node))
          if (at == 0) return
          row(at) = row(at) + self%share(1, node)*force
@@ -607,6 +608,7 @@ contains
          return
       end if
       drift = 0.0_wp
+      ! A floor is the upper one of a storey and the lower one of the next; nodes of none (-1) do not count.
       do i = 1, self%n
          if (self%number(1, i) == 0) cycle
          associate (floor => self%storey(i), x => d(self%springs + self%number(1, i)))

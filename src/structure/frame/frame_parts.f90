@@ -208,7 +208,7 @@ contains
       !> Check a group that gives the members of some places a kind.
       subroutine check_cell(cell, group, key, what, most)
          type(cell_record), intent(in) :: cell
-         !> Group and key of the line or bay, what these are in plural, and how many there are
+         !> Group and key of the line or bay, and what these are in plural
          character(len=*), intent(in) :: group, key, what
          !> Largest number of a line or bay
          integer, intent(in) :: most

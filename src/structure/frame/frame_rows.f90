@@ -55,6 +55,7 @@ contains
             end associate
          end do
       end do
+      ! Place of the last value that is filled
       at = 1 + 3*self%n
       m = self%members
       do i = 1, m
@@ -202,6 +203,7 @@ contains
          do j = 1, 2
             ! An end that can move has no support along x.
             if (self%number(1, e%node(j)) > 0) cycle
+            ! Column 3 j - 2 is that of x at end j.
             force = force - sum(s*e%to_basic(:, 3*j - 2))
             if (.not. self%axially_loaded) cycle
             ! A chord that leans presses the support aside; a rotation against it has the opposite sign.

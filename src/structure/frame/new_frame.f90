@@ -623,6 +623,7 @@ contains
       !> Its row of elongations is changed here
       type(frame_element), intent(inout) :: e
 
+      ! That unknown is the last one of the element in either plane.
       if (frame%axial_of(i) > 0) e%to_basic(1, :) = 0.0_wp
       if (frame%parting(i) > 0) then
          e%to_basic(1, e%width) = 1.0_wp
