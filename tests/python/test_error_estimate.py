@@ -18,7 +18,7 @@ import pytest
 import rbsdem
 from rbsdem import __main__ as command
 from rbsdem.run.accuracy import Answer, errors_of
-from rbsdem.run.solver import METHODS
+from rbsdem.run.solver import IN_TIME, METHODS
 from rbsdem.springs import Bilinear, Elastic
 
 COLUMN = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
@@ -104,7 +104,7 @@ def test_a_static_path_is_exact(kinematics, every):
     assert str(estimate) == "static: exact but for round-off"
 
 
-@pytest.mark.parametrize("method", [name for name in METHODS if name not in ("static", "auto")])
+@pytest.mark.parametrize("method", [name for name in IN_TIME if name != "auto"])
 def test_every_result_has_the_class_of_error_of_its_method(exact, method):
     run = shake(method=method)
     estimate, row = run.error_estimate, METHODS[method]
