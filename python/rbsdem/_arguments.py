@@ -33,7 +33,7 @@ _MOST = 60
 _NO_NUMBERS = (bool, np.bool_, str, bytes, bytearray, np.datetime64, np.timedelta64)
 
 
-#: Of Fortran.
+#: The largest whole number of Fortran.
 _LARGEST_INTEGER = 2**31 - 1
 
 
@@ -41,7 +41,7 @@ def shown(value: object) -> str:
     """Return a value for a message; of a record, or where it is long, only its kind."""
     try:
         told = repr(value)
-    except Exception:  # Of any class of the caller, and of whole numbers of many digits.
+    except Exception:  # Classes of the caller raise anything, and ints of many digits too.
         told = ""
     if 0 < len(told) <= _MOST and "\n" not in told:
         return told
@@ -68,7 +68,7 @@ def number(value: Any, name: str, **bounds: Any) -> float:
         return float(value)
     except OverflowError:
         raise InputError(f"{name} = {shown(value)} is too large") from None
-    except Exception:  # Of any class of the caller.
+    except Exception:  # Classes of the caller raise anything.
         raise InputError(f"{name} = {shown(value)} must be a number") from None
 
 
@@ -83,7 +83,10 @@ def within(
     unit: str = "",
     hint: str = "",
 ) -> Number:
-    """Return a number if it is finite and within its bounds; `hint` ends the message."""
+    """Return a number if it is finite and within its bounds; `hint` ends the message.
+
+    `above` and `below` are excluded, `least` and `most` are not.
+    """
     low = -np.inf if least is None else least
     high = np.inf if most is None else most
     inside = low <= value <= high and abs(value) < np.inf
@@ -103,7 +106,7 @@ def integer(value: Any, name: str, **bounds: Any) -> int:
     """Return `value` as an int; with bounds see `within`."""
     if bounds:
         return within(integer(value, name), name, **bounds)
-    # A time of numpy is one of its whole numbers.
+    # In numpy a span of time, timedelta64, is a whole number: `_NO_NUMBERS` keeps it out.
     if isinstance(value, _NO_NUMBERS) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name} = {shown(value)} must be a whole number")
     if abs(int(value)) > _LARGEST_INTEGER:
@@ -155,7 +158,7 @@ def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
         if np.ma.is_masked(values) or (array.dtype.kind not in "iuf" and array.size):
             raise TypeError
         array = array.astype(np.float64)
-    except Exception:  # Of any class of the caller.
+    except Exception:  # Classes of the caller raise anything.
         raise InputError(f"{name} = {shown(values)} must be an array of numbers", name) from None
     if shape == "any":
         return array
@@ -192,7 +195,7 @@ def path(value: Any, name: str = "path") -> Path:
             if isinstance(plain, str) and plain and "\0" not in plain:
                 os.fsencode(plain)
                 return Path(plain).expanduser()
-        except Exception:  # Of any class of the caller; a name that no file can have.
+        except Exception:  # Classes of the caller raise anything; no file has such a name.
             pass
     raise InputError(f"{name} = {shown(value)} is not the path of a file or folder")
 
@@ -294,7 +297,7 @@ def several(values: Any, name: str, of: str = "whole numbers") -> list[Any]:
     if not isinstance(values, (str, bytes, dict)):
         try:
             return list(values)
-        except Exception:  # Of any class of the caller.
+        except Exception:  # Classes of the caller raise anything.
             pass
     raise InputError(f"{name} = {shown(values)} must be a sequence of {of}")
 

@@ -172,9 +172,10 @@ _RUNNING: list[NDArray[np.int32]] = []
 
 @cache
 def _waker(_process: int) -> socket.socket:
-    """Return the end that Python writes signals to at once, also while Fortran runs.
+    """Return the end of a socket pair that Python writes signals to, also while Fortran runs.
 
-    A thread of the process reads the other end, and ends the runs; a fork has its own.
+    A thread reads the other end, and ends the runs. A fork, with another number of process, gets
+    a pair and a thread of its own.
     """
     import socket  # noqa: PLC0415
 
@@ -182,10 +183,12 @@ def _waker(_process: int) -> socket.socket:
     write.setblocking(False)
 
     def watch() -> None:
+        """End all runs when the number of SIGINT arrives."""
         with read:
             while number := read.recv(1):
-                for control in _RUNNING if number[0] == signal.SIGINT else ():
-                    control[0] = 1
+                for control in _RUNNING:
+                    if number[0] == signal.SIGINT:
+                        control[0] = 1
 
     atexit.register(write.close)
     threading.Thread(target=watch, name="rbsdem interrupts", daemon=True).start()
@@ -194,9 +197,9 @@ def _waker(_process: int) -> socket.socket:
 
 @contextmanager
 def _interruptible() -> Iterator[NDArray[np.int32]]:
-    """Give a run its control word, which Ctrl-C sets; what follows is what Python does on Ctrl-C.
+    """Give a run its control word: Ctrl-C sets it, the run ends, and Python handles the signal.
 
-    Signals reach the main thread alone; there the program keeps the waker that it may have.
+    Signals reach the main thread alone. A program that has set a wakeup descriptor keeps it.
     """
     control = np.zeros(2, np.int32)
     if threading.current_thread() is not threading.main_thread():
@@ -280,7 +283,7 @@ class Made:
 
     @property
     def address(self) -> NDArray[np.int32]:
-        """Where it is, for Fortran."""
+        """Number by which Fortran finds the structure; a part is first checked as a whole."""
         if self.is_part:
             vars(self).update(vars(Made(self.statement)))
         assert self._kept is not None
@@ -343,6 +346,7 @@ def several(value: float | list[float]) -> list[float]:
 
 
 def _split_item(item: str) -> tuple[str, str, str]:
+    """Return key, mark ("=" or ":" or none) and rest of an item of a `Statement`."""
     for mark in ("=", ":"):
         key, there, rest = item.partition(mark)
         if there and key.isidentifier():
@@ -370,11 +374,12 @@ def _quantities() -> Answer:
 
 
 def _names() -> list[str]:
+    """Return lines of names: channels with units, measures, then the kinds of section values."""
     return _quantities().text.splitlines()
 
 
 def note_limits() -> tuple[float, float, float]:
-    """Return rotation [rad], missed share of the energy and peak of the ground [m/s2] of notes."""
+    """Return beyond what notes are given: rotation [rad], missed energy, ground peak [m/s2]."""
     rotation, energy, ground = _quantities().values.tolist()
     return rotation, energy, ground
 
@@ -431,6 +436,7 @@ def time_history(
     """
     inputs: dict[str, Any] = {"time": time, "watches": thresholds, "initial": initial}
     inputs |= {"opening_given": opening_given, "before": before, **loads}
+    # The solver returns at once from a run that will be long, unless the user was told of it.
     told = False
     while True:
         with _interruptible() as control:

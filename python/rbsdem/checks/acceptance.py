@@ -116,7 +116,7 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
 
 
 def _face(way: Array, upright: bool) -> str:
-    """Return the face of a member that lies in a direction."""
+    """Return the face of a member that lies in a direction `way`, along x and upward."""
     if upright:
         return "right" if way[0] > 0 else "left"
     return "top" if way[1] > 0 else "bottom"
@@ -197,7 +197,10 @@ class _Limits:
 
 
 def _asce_41(d: _Demand, knowledge: float) -> _Limits:
-    """Return the limits of an end by chapter 10 of ASCE 41-17."""
+    """Return the limits of an end by chapter 10 of ASCE 41-17; `knowledge` is its factor kappa.
+
+    The clauses take sizes in mm and stresses in MPa.
+    """
     if "joint" in d.kind:
         raise InputError("table 10-11 is not built in; give limits of the node")
     load = max(d.axial, 0.0)
@@ -210,6 +213,7 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
     stiffness = asce_41.column_stiffness(ratio) if d.kind == "column" else 0.3
     yielding = moment * d.length / (6.0 * stiffness * law["ec"] * section.inertia)
     plastic = max(d.rotation - yielding, 0.0)
+    # The shear force at which both ends have their nominal moments.
     at_yield = (moment + opposite) / d.length
     width, depth = 1e3 * section.web_width, 1e3 * section.effective_depth
     legs = ties.legs * math.pi * (1e3 * ties.diameter) ** 2 / 4.0 if ties else 0.0
@@ -253,7 +257,11 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
 
 
 def _en_1998_3(d: _Demand, primary: bool, detailing: float = 1.0) -> _Limits:
-    """Return the limits of an end by annex A of EN 1998-3."""
+    """Return the limits of an end by annex A of EN 1998-3.
+
+    `primary`: whether gamma_el is that of primary members; `detailing`: a factor of the ultimate
+    rotation for members without seismic detailing.
+    """
     if "joint" in d.kind:
         return _ec_8_joint(d)
     if d.section.shape != "rectangle":
@@ -272,6 +280,7 @@ def _en_1998_3(d: _Demand, primary: bool, detailing: float = 1.0) -> _Limits:
 
 
 def _ec_8_joint(d: _Demand) -> _Limits:
+    """Return the strength in shear of a joint (EN 1998-1, 5.5.3.3); it has no limit of rotation."""
     column, beam = d.section, d.other
     if not isinstance(column, RectangularSection):
         raise InputError(f"5.5.3.3 has no strength for this column ({column.shape})")
@@ -466,6 +475,7 @@ class Assessment(Tabular):
         return {"asce_41": "ASCE 41-17", "en_1998_3": "EN 1998-3:2005"}[self.code]
 
     def _level(self, level: str | None) -> str:
+        """Return the checked name of a level; None is the last one, nearest to collapse."""
         name = self.levels[-1] if level is None else level
         return str(_arguments.choice(name, "level", self.levels))
 

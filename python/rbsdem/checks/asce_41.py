@@ -45,7 +45,11 @@ def pinching_factor(strength: float, period: float) -> float:
 
 
 def negative_slope(alpha_2: float, leaning: float, *, near_field: bool) -> float:
-    """Return alpha_e = alpha_PDelta + lambda (alpha_2 - alpha_PDelta), lambda 0.8 or 0.2."""
+    """Return alpha_e = alpha_PDelta + lambda (alpha_2 - alpha_PDelta), lambda 0.8 or 0.2.
+
+    The slopes are over the effective stiffness; `leaning` is alpha_PDelta, and lambda is 0.8 near
+    a fault.
+    """
     return leaning + (0.8 if near_field else 0.2) * (alpha_2 - leaning)
 
 
@@ -174,6 +178,7 @@ def column_rotations(
     top = 0.65 if circle else 0.5
 
     def loss(pressed: float) -> float:
+        """Return b, the rotation at the loss of the axial load, up to a ratio of 0.5."""
         return top / (5.0 + max(pressed, 0.1) / 0.8 / rho * fc / fyt) - 0.01
 
     b = loss(nu) if nu <= 0.5 else loss(0.5) * max(0.7 - nu, 0.0) / 0.2

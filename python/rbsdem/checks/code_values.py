@@ -188,7 +188,7 @@ class _Drawn:
     def least_of_wall(self, drift: Callable[[float, float, float, float], float]) -> float:
         """Return the lesser drift of both directions.
 
-        It is a function of length, width of the zone in compression and depth of the neutral axis
+        `drift` is a function of length, width of the zone in compression and depth of the neutral axis
         [m], and of the moment [N m].
         """
         drifts = []
@@ -283,6 +283,7 @@ def yield_drift(values: CodeValues, stiffness: str) -> float:
 
 
 def _yield_and(values: CodeValues, stiffness: str, rotation: str) -> float:
+    """Return the drift at yield plus a plastic rotation, both by their names in `values`."""
     return yield_drift(values, stiffness) + values[rotation]
 
 
@@ -559,6 +560,7 @@ def _secant(comparison: CodeComparison, name: str) -> float:
 
 
 def _largest(comparison: CodeComparison, name: str) -> float:
+    """Return the largest force of the backbone of a source [N]; NaN if there is none."""
     line = next((each for each in comparison.backbones if each.name == name), None)
     return (
         math.nan if line is None else float(line.force(comparison.span, comparison.leaning).max())
@@ -566,6 +568,7 @@ def _largest(comparison: CodeComparison, name: str) -> float:
 
 
 def _axial_failure(comparison: CodeComparison, name: str) -> float:
+    """Return the drift at axial failure; the b of ASCE 41 is plastic, and yield is added to it."""
     turned = yield_drift(comparison.values, "asce_41.stiffness") if name == "asce_41.b" else 0.0
     return turned + comparison.values[name]
 

@@ -79,6 +79,7 @@ def ec_8_shear_resistance(q: Quantities, plastic_ductility: float = 0.0) -> floa
 
 
 def _nu(q: Quantities) -> float:
+    """Return the axial load ratio N/(b h f_c)."""
     return q.load / (q.width * q.depth * q.fc)
 
 
@@ -90,6 +91,7 @@ def _steel(q: Quantities) -> float:
 
 
 def _confined(q: Quantities) -> float:
+    """Return alpha rho_sx f_yw/f_c, the exponent of 25 in (A.1) and (A.3)."""
     return ec_8_confinement(q) * q.tie_ratio * q.fyt / q.fc
 
 
@@ -234,6 +236,7 @@ class Haselton:
         return self._stiffness(0.77, 0.43, 0.35, 0.8)
 
     def _stiffness(self, factor: float, power: float, least: float, most: float) -> float:
+        """Return factor (0.1 + nu)^0.8 (L_s/h)^power between its bounds."""
         pressed = max(0.1 + self._nu, 0.0) ** 0.80
         return float(min(max(factor * pressed * self._q.slenderness**power, least), most))
 

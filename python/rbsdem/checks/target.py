@@ -83,12 +83,12 @@ class Target(Tabular):
 
     @property
     def reached(self) -> bool:
-        """Whether the curve goes as far."""
+        """Whether the curve goes as far as the target displacement."""
         return self.displacement <= self.curve.largest * (1.0 + 1e-9)
 
     @property
     def acceleration(self) -> float:
-        """Spectral acceleration at that period and the damping of the spectrum [m/s2]."""
+        """Spectral acceleration at the effective period, with the spectrum's damping [m/s2]."""
         return self.spectrum.sa(self.period)
 
     @property
@@ -277,6 +277,7 @@ def capacity(push: FrameResult | BuildingResult) -> Capacity:
     first = modes(frame, 1)
     parts, name = frame.parts, frame.control_node
     phi = float(first.x[parts.nodes.index(name) if name else int(parts.y.argmax()), 0])
+    # Modes have a modal mass of 1, so that this participation squared is the effective mass.
     moved = math.sqrt(float(first.mass[0]))
     gamma, modal_mass = moved * abs(phi), moved / abs(phi)
     side = 1.0 if push.displacement[-1] >= push.displacement[0] else -1.0
@@ -291,7 +292,10 @@ def capacity(push: FrameResult | BuildingResult) -> Capacity:
 
 
 def _first_yield(push: FrameResult | BuildingResult, side: float) -> float:
-    """Return the displacement of the first event but cracks, NaN where nothing is watched [m]."""
+    """Return the displacement of the first event but cracks [m].
+
+    If there are cracks alone it is that of the end; NaN where nothing is watched.
+    """
     events = push.events
     beyond = [event.displacement for event in events if event.name != "cracking"]
     last = push.displacement[-1]
@@ -488,9 +492,10 @@ class Capacity(Tabular):
     def idealise(self, method: str, end: float) -> Idealisation:
         """Return the two straight lines of the curve up to an end [m].
 
-        Up to the first yield of a member they are one line that ends at the force there: that of
-        the curve up to its end, where any yield point would have equal areas, and behind it, where
-        members have cracked, with the stiffness of the method for a yield force as at the end.
+        If the end comes before the first yield of a member, there is one line up to the force at
+        that yield. Its slope is that of the curve as long as the curve is straight, where any yield
+        point would have equal areas. Further on, where members have cracked, the slope is the
+        stiffness that the method finds up to the end.
         """
         curve = Envelope(1, self.displacement, self.force)
         if self.yields(end):
@@ -509,7 +514,10 @@ class Capacity(Tabular):
         return Idealisation(method, SOURCES[method], *first, *first, *left)
 
     def ductility(self, displacement: float, lines: Idealisation, end: float) -> float:
-        """Return a displacement over that at yield, with lines up to an end [m]."""
+        """Return a displacement over that at yield, with lines up to an end [m].
+
+        If no member yields before the end, that at the first yield of a member is taken.
+        """
         return displacement / (lines.yield_displacement if self.yields(end) else self.first_yield)
 
     def yields(self, end: float) -> bool:
@@ -525,7 +533,7 @@ class Capacity(Tabular):
 
     @cached_property
     def elastic(self) -> float:
-        """Displacement of the last point on that line [m]."""
+        """Displacement of the last point on the first line of the curve [m]."""
         near = self.force >= (1.0 - _STRAIGHT) * self.slope * self.displacement
         return float(self.displacement[np.flatnonzero(near)[-1]])
 
@@ -541,6 +549,7 @@ class Capacity(Tabular):
 
     @property
     def _top(self) -> int:
+        """Row of the largest force, of a plateau its last row."""
         return int(np.flatnonzero(self.force >= (1.0 - 1e-9) * self.force.max())[-1])
 
     def force_at(self, displacement: float) -> float:
@@ -585,6 +594,7 @@ def asce_41(
     coefficients: dict[str, float] = {}
 
     def demand(end: float) -> tuple[float, Idealisation, float, float]:
+        """Return delta_t [m], lines up to an end [m], T_e [s] and mu_strength."""
         lines = curve.idealise("asce_41", end)
         elastic = not curve.yields(end)
         period = curve.period * math.sqrt(curve.stiffness / lines.stiffness)
@@ -619,12 +629,12 @@ def asce_41(
 def _meeting(
     curve: Capacity, demand: Callable[[float], float], most: float, *, furthest: bool = False
 ) -> tuple[float, float]:
-    """Return the displacement that a demand up to itself asks for, and the end of its lines.
+    """Return the displacement that equals its demand by lines up to it, and the end of the lines.
 
-    On the first line of the curve it is the elastic one. Beyond, the demand up to each end grows
-    with the spectrum, so the ends at which it lies beyond them become more: the last of them in a
-    fixed order of trials never comes back as the spectrum grows. An end up to which the curve has
-    no such lines asks for the elastic displacement.
+    On the first line of the curve it is the elastic demand. Beyond, the demand by lines up to each
+    end grows with the spectrum, so that more ends have a demand beyond them: the last such end, in
+    a fixed order of trials, never moves back as the spectrum grows. An end up to which the curve
+    has no lines of the method has the elastic demand.
 
     Parameters
     ----------
@@ -658,7 +668,7 @@ def _meeting(
         if high - low <= _CLOSE * high:
             break
         low, high = (middle, high) if asked(middle)[0] > middle else (low, middle)
-    # Lines that change at once may ask for more before it and for less behind it.
+    # Where the lines jump, the demand may be beyond the end before the jump and below it behind.
     return high, asked(high)[1]
 
 
@@ -669,7 +679,10 @@ def _most_strength(
     near_field: bool | None,
     period: float,
 ) -> tuple[float, dict[str, float]]:
-    """Return mu_max of 7.4.3.3.2 and the slopes of the falling branch over K_e."""
+    """Return mu_max of 7.4.3.3.2 and the slopes of the falling branch over K_e.
+
+    The branch goes from the largest force to 60 % of the yield force, or to the end of the curve.
+    """
     u, v = curve.displacement[curve._top :], curve.force[curve._top :]
     below = np.flatnonzero(v <= 0.6 * lines.yield_force)
     last = float(u[-1]), float(v[-1])
@@ -707,6 +720,7 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
     values: dict[str, float] = {}
 
     def demand(end: float) -> float:
+        """Return the target displacement by lines up to an end [m]."""
         lines = curve.idealise("ec_8", end)
         force, at = lines.yield_force / curve.gamma, lines.yield_displacement / curve.gamma
         period = 2.0 * math.pi * math.sqrt(curve.modal_mass * at / force)
@@ -763,6 +777,7 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Target:
     values: dict[str, float] = {}
 
     def demand(end: float) -> float:
+        """Return the displacement of the equivalent oscillator by lines up to an end [m]."""
         lines = curve.idealise("asce_41", end)
         slow = 2.0 * math.pi * math.sqrt(curve.modal_mass / lines.stiffness)
         longer, more = equivalent(curve.ductility(end, lines, end))

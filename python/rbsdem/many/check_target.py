@@ -54,10 +54,11 @@ class TargetCheck(Tabular):
 
     @property
     def collapsed(self) -> NDArray[np.bool_]:
-        """Whether each run collapsed; a drift without bound for the medians."""
+        """Whether each run collapsed; medians take its drift as infinite."""
         return np.asarray(self.status == "collapsed")
 
     def _ratios(self) -> dict[str, Array]:
+        """Return the drifts of all runs over the estimate: of the roof, storeys, largest storey."""
         ratios = {"roof": self.roof_drift / self.estimated_roof_drift}
         for i, estimate in enumerate(self.estimated_storey_drift):
             ratios[f"storey {i + 1}"] = self.storey_drift[:, i] / estimate

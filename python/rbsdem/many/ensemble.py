@@ -151,6 +151,7 @@ def work_through(
 
 
 def _cancel(waiting: dict[Future[Any], Task], stop: Callable[[], None]) -> None:
+    """End the tasks under way, and forget those that were not yet started."""
     stop()
     for future in [future for future in waiting if future.cancel()]:
         del waiting[future]
@@ -449,7 +450,7 @@ def ensemble(
     column, motion, _ = np.unravel_index(wanted, full.shape)
     runs = column.astype(np.int32), motion.astype(np.int32), full.ravel()[wanted]
     asked = functions, inputs.limit_states_among(names), inputs.storeys_among(names)
-    # Without settings the fast way, if it can be taken by all.
+    # Without settings: RK4 if all runs go side by side in lanes, else "auto".
     methods = [{}] if "method" in settings else [{"method": "auto"}]
     methods = methods if solver else [{"method": "rk4"}, *methods]
     for method in methods:
@@ -587,7 +588,10 @@ class _Workers:
 
 
 def _longest(each: Array, lanes: NDArray[np.int32], workers: int) -> float:
-    """Return the expected seconds of a task, so that workers end together and lanes are full."""
+    """Return the expected seconds of a task, so that workers end together and lanes are full.
+
+    `each` are expected seconds of the runs, `lanes` 1 for those that advance side by side.
+    """
     together = int(lanes.sum())
     most = 8 * workers
     if 2 * together > each.size:
@@ -663,6 +667,7 @@ def checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
 
 
 def _named(names: tuple[str, ...], result: Outcome, plan: Plan) -> dict[str, Array]:
+    """Return the measures of all runs by name, with drifts: displacements over heights."""
     values = dict(zip(plan.names, result.values, strict=True))
     heights = np.array([column.height for column in plan.columns])[plan.column]
     values["peak_drift"] = np.abs(values["peak_displacement"]) / heights

@@ -145,7 +145,8 @@ class Hazard:
             inside = [part(x[i], x[i + 1], i) for i in range(slope.size)]
             before, behind = part(-np.inf, x[0], 0), part(x[-1], np.inf, -1)
         total = before + sum(inside) + behind
-        # Of intensities, not of capacities: those beyond a point fail with all capacities below it.
+        # The share is by intensities, not by capacities: an intensity beyond the last point also
+        # reaches all capacities below that point.
         failed = special.ndtr((x[[0, -1]] - mu) / beta) * self.frequencies[[0, -1]]
         beyond = before - failed[0] + behind + failed[1]
         share = beyond / total if 0.0 < total < np.inf else float(total > 0.0)
@@ -199,11 +200,12 @@ def _part(
     ends = [(end - mu) / beta - s * beta for end in (low, high)]
     if ends[0] < 0 < ends[1]:
         peak = y + s * (mu + 0.5 * s * beta**2 - x)
-        # The peak lies between: of two tails that are missing none is the larger part.
+        # The centre lies between the ends: the difference of both integrals loses no digits.
         return float(np.exp(peak) * (special.ndtr(ends[1]) - special.ndtr(ends[0])))
     sign = 1.0 if ends[0] >= 0 else -1.0
 
     def tail(end: float, place: float) -> float:
+        """Return the integral from an end away from the centre; `place` is its distance in sigma."""
         if np.isinf(end):
             return 0.0
         product = np.exp(y + s * (end - x) - 0.5 * ((end - mu) / beta) ** 2)
@@ -314,6 +316,7 @@ class Capacities:
         return fit_bounds(self._bounds(draws), beta)[:2]
 
     def _bounds(self, draws: NDArray[np.int_]) -> Bounds:
+        """Return the bounds of the records whose places are drawn, shape (..., n)."""
         known = self.known
         ends = (self.values, self.values) if known else (self.lower, self.upper)
         with np.errstate(divide="ignore"):
@@ -555,6 +558,7 @@ def _check(who: str, data: Counts | Capacities, beta: float | None) -> None:
 
 
 def _undetermined(bounds: Bounds) -> str:
+    """Return why the data determine no curve, and between which intensities the median is."""
     low, high = (float(np.exp(end)) for end in bounds.gap())
     if np.isnan(low):
         return "the fit has not come to an end; give intensities within a few powers of ten"
@@ -608,7 +612,7 @@ class WithFragility(Tabular, ABC):
         return self._fit(name, state, beta)
 
     def _fit(self, name: str, state: tuple[str, float], beta: float | None) -> Fragility:
-        """Return a fragility whose dispersion has that of the drift at axial failure."""
+        """Return a fragility; the scatter of the drift at axial failure, if known, widens it."""
         label = self.runs.measure.label
         curve = fit_fragility(name, self._data(*state), label, beta)
         if self.at_ends is None or beta is not None:

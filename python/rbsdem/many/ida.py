@@ -39,6 +39,7 @@ from rbsdem.section.criteria import WATCHED
 from rbsdem.section.frame import Frame, Structure
 from rbsdem.section.strength import AXIAL_FAILURE_FACTORS
 
+#: Least intensity that is tried [m/s2]; how often a collapse below others is searched for anew.
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5
 #: Ratio of the bounds of a limit state; closer, they count as known (`fragility.NARROW`).
@@ -125,7 +126,10 @@ def search_collapse(
 
 
 def _bracket(work: Collector, search: CollapseSearch, low: Array, high: Array) -> None:
-    """Let the intensity grow until there is a collapse, or shrink if the first run collapsed."""
+    """Let the intensity grow until there is a collapse, or shrink if the first run collapsed.
+
+    `low` and `high` are filled: the last intensity without a collapse, and the first with one.
+    """
     level = np.full(low.shape, search.first)
     while np.isfinite(level).any():
         collapsed = work.run(level[:, :, None])[:, :, 0]
@@ -144,7 +148,10 @@ def _bracket(work: Collector, search: CollapseSearch, low: Array, high: Array) -
 
 
 def _narrow(work: Collector, search: CollapseSearch, low: Array, high: Array) -> None:
-    """Halve the intervals of the collapses, in the logarithm, until all are narrow enough."""
+    """Halve the intervals of the collapses, in the logarithm, until all are narrow enough.
+
+    The ends of the intervals, `low` and `high`, are moved in place.
+    """
     while True:
         wide = np.isfinite(high) & (high - low > search.resolution * high)
         if not wide.any():
@@ -180,7 +187,10 @@ def _narrow_states(work: Collector, low: Array, states: Sequence[str]) -> None:
 
 
 def _fill(work: Collector, search: CollapseSearch, low: Array, high: Array) -> bool:
-    """Add runs in the largest gaps below the collapses; return whether one collapsed."""
+    """Add runs in the largest gaps below the collapses; return whether one collapsed.
+
+    Then the interval of that collapse, in `low` and `high`, is moved down to it.
+    """
     wanted: dict[tuple[int, int], list[float]] = {}
     for column, motion in np.ndindex(low.shape):
         (tried,) = work.tried(column, motion, "intensity")
@@ -305,6 +315,7 @@ class IDA(WithFragility):
         return self._data(measure, limit)
 
     def _data(self, measure: str, limit: float) -> Capacities:
+        """Return the bounds of the intensity at which each curve reaches a limit."""
         if measure == "collapse":
             return Capacities(self.lower.ravel(), self.upper.ravel())
         response = self.runs.response(measure)
@@ -463,6 +474,7 @@ def _may_fail(runs: Runs, frames: Mapping[str | int, Frame]) -> bool:
 
 
 def _search_of(levels: Any) -> CollapseSearch | None:
+    """Return the search that `levels` asks for; None if they are intensities."""
     if isinstance(levels, CollapseSearch):
         return levels
     if isinstance(levels, str):
@@ -508,7 +520,10 @@ def _at(levels: Array, level: Array, response: Array) -> Array:
 
 
 def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tuple[float, float]:
-    """Return bounds of the intensity at which a curve first reaches a value."""
+    """Return bounds of the intensity at which a curve first reaches a value.
+
+    If the measure is `smooth`, both are the intensity by interpolation between two runs.
+    """
     reached = np.flatnonzero(response >= limit)
     if not reached.size:
         return float(level[-1]), np.inf
@@ -523,6 +538,7 @@ def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tupl
 
 
 def _index(key: str | int, names: list[Any], what: str) -> int:
+    """Return the place of a name; a number that is no name is the place itself."""
     if key in names:
         return names.index(key)
     if isinstance(key, int) and 0 <= _arguments.integer(key, what) < len(names):
@@ -557,6 +573,7 @@ class Stripes(WithFragility):
         return self._data(measure, limit)
 
     def _data(self, measure: str, limit: float) -> Counts:
+        """Return whether each record reaches a limit at each level; NaN where it was not run."""
         response = self.runs.response(measure)
         level = np.abs(np.subtract.outer(self.levels, self.runs.intensity)).argmin(axis=0)
         records = self.runs.column * len(self.runs.motions) + self.runs.motion

@@ -55,7 +55,7 @@ def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], lis
 def named_motions(
     motions: Any, columns: Iterable[Any], faults: list[str]
 ) -> tuple[int, list[Motion]]:
-    """Return how many motions of columns are given, and those that are right.
+    """Return how many motions are given, and those without a fault.
 
     A motion is an object with time and acceleration, a pair of times (or one step) and
     accelerations, or a pair of `GroundMotion` along x and y. Without names of their own they are
@@ -90,6 +90,7 @@ def named(
 
 
 def _name_of(item: Any) -> Any:
+    """Return the name of an item, of a pair that of both; None if it has none."""
     if not is_pair(item):
         return getattr(item, "name", None)
     x, y = item
@@ -211,6 +212,7 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
 
 
 def _state(initial: Any, who: str, faults: list[str]) -> Array:
+    """Return the state in numbers; rest, and one more fault, if it is none."""
     with _arguments.collected(faults, who):
         return state_of(initial, "ensemble")
     return AT_REST
@@ -370,8 +372,8 @@ def limit_states(edp: str, threshold: Any) -> dict[str, tuple[str, float]]:
         The measure.
     threshold : float, mapping or None
         One value, or values by the name of the limit state, each a number for this measure or a
-        pair of a measure and a number. None for "collapse" and the limit states of
-        `rbsdem.Result.limit_states`.
+        pair of a measure and a number. None if the measure is "collapse" or a limit state of
+        `rbsdem.Result.limit_states`, which have no threshold to give.
     """
     if isinstance(threshold, Mapping):
         if not threshold:
@@ -386,6 +388,7 @@ def limit_states(edp: str, threshold: Any) -> dict[str, tuple[str, float]]:
 
 
 def _one(edp: str, threshold: Any) -> tuple[str, float]:
+    """Return a measure with its checked threshold; that of a measure of 0 or 1 is not given."""
     if edp in _SWITCHES:
         if threshold is not None:
             raise InputError(f"threshold: {edp} has none; leave it out")

@@ -114,6 +114,7 @@ def _limits_of(case: Case, code: str) -> dict[str, Any]:
 
 
 def _spectrum(group: Mapping[str, Any]) -> DesignSpectrum:
+    """Return the spectrum that the group &target states."""
     code = group["spectrum"]
     for name in _NEEDED[code]:
         if name not in group:

@@ -60,11 +60,11 @@ class Bounds:
     weight: Array
 
     def gap(self) -> tuple[Array, Array]:
-        """Return between which logarithms a single value could stand for all, each of shape (...).
+        """Return between which logarithms one value would fit all bounds, each of shape (...).
 
-        Without weight counts nothing. The first is below the second where all bounds have a value
-        in common, or touch: any spread down to none is then as likely or likelier, and only bounds
-        of the median are known. They are those of the nearest bounds that do not touch.
+        Bounds without weight do not count. If all bounds have a value in common, or touch, a
+        distribution without spread is the likeliest, and only bounds of its median are known: the
+        nearest bounds that do not touch. Else both are NaN.
         """
         kept = self.weight > 0
         low, high = np.where(kept, self.low, -np.inf), np.where(kept, self.high, np.inf)
@@ -149,6 +149,7 @@ def fit_bounds(bounds: Bounds, beta: float | None = None) -> tuple[Array, Array,
                 break
             share = np.where(down, 0.5 * share, share)
         a, b, value = *new, at
+        # b goes to 0: the share does not grow with the intensity.
         flat |= able & (b < unit / MOST_BETA) & (beta is None)
         if np.all(done | flat):
             break
@@ -239,6 +240,7 @@ class _Terms:
         return self._sums(g_point, g), self._sums(second_point, second)
 
     def _sums(self, known: tuple[Array, ...], bounded: tuple[Array, ...]) -> tuple[Array, ...]:
+        """Return weighted sums of terms: of known values, and of those between bounds."""
         pairs = zip(known, bounded, strict=True)
         terms = (np.where(self._exact, at, between) for at, between in pairs)
         return tuple((self._weight * term).sum(-1) for term in terms)

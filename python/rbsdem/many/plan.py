@@ -50,7 +50,7 @@ class Plan:
     """Runs with all that they need: some can be taken out of it and sent to another process.
 
     `column` and `motion` are places in `columns` and `motions`. `initial` are the states that the
-    runs of each column begin in; an empty one is at rest, no list that all are. The drifts of so
+    runs of each column begin in; an empty state is rest, and so is an empty list. The drifts of so
     many `storeys` are kept one by one.
     """
 
@@ -158,6 +158,7 @@ def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
 
 
 def _batch(plan: Plan, thresholds: list[Array]) -> dict[str, Any]:
+    """Return columns and motions as `_core.batch` joins them; `thresholds` are by column."""
     columns = [column._statement for column in plan.columns]
     motions = [(motion.time, motion.acceleration, motion.across) for motion in plan.motions]
     return _core.batch(columns, _core.settings(plan.settings), thresholds, plan.before, motions)
@@ -167,7 +168,8 @@ def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Out
     """Do the runs of a plan.
 
     `control` is shared with the thread that waits: it sets the first number to end the task before
-    its next run, and reads in the second how many runs are done.
+    its next run, and reads in the second how many runs are done. `kernel` is the `level` of
+    `_core.run_ensemble`.
     """
     begin = time.monotonic()
     control = np.zeros(2, dtype=np.int32) if control is None else control
@@ -222,6 +224,7 @@ def _call_functions(
 
 
 def _number(value: Any) -> float:
+    """Return what a function of the user returned as a float; a text is refused."""
     if isinstance(value, (str, bytes)):
         raise TypeError(f"{value!r:.40} is a text; return a number")
     return float(value)

@@ -66,6 +66,7 @@ class Intensity:
         return math.sqrt(math.prod(each))
 
     def _of_motion(self, motion: GroundMotion) -> float:
+        """Return the intensity of one motion [m/s2]."""
         if self.name == "pga":
             return motion.pga
         if self.name == "sa_t1":
@@ -139,6 +140,7 @@ MEASURES = ("peak_drift", "residual_drift", "peak_base_shear", "peak_rotation", 
 COLLAPSES = ("collapsed", "axial_failure")
 #: Fates that count as one.
 LOST = (*COLLAPSES, "failed")
+#: Method by which a run that failed is tried again.
 _AGAIN = "rk45"
 #: Least intensity [m/s2] from which a motion is scaled.
 _LEAST_UNIT = 1e-20
@@ -341,6 +343,7 @@ class Collector:
             again.ravel()[places] = scales.ravel()[places]
             how = {n: v for n, v in self.settings.items() if n in _KEPT} | {"method": _AGAIN}
             if how.get("store") is not None:
+                # A folder of its own within that of the first attempt.
                 how["store"] /= _AGAIN
             second = self._ensemble(again, how)
             status[failed] = second.status

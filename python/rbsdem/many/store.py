@@ -160,11 +160,13 @@ class Store:
 
 
 def _connection(path: Path, patience: float = _PATIENCE) -> sqlite3.Connection:
+    """Open a database, waiting so many seconds for the lock of another process."""
     # Transactions are begun and ended by name.
     return sqlite3.connect(path, timeout=patience, isolation_level=None)
 
 
 def _rows(path: Path, query: str) -> list[Any]:
+    """Return the answer of a database to a query; nothing while its table is not there."""
     with _told(path), closing(_connection(path)) as file:
         # Another process may have made the file, and not yet its table.
         is_new = file.execute("select count(*) from sqlite_master").fetchone() == (0,)

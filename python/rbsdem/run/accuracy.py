@@ -14,8 +14,8 @@ from rbsdem._types import Array
 from rbsdem.run.solve import follow, march
 from rbsdem.run.solver import METHODS
 
-#: By how much a tolerance is sharpened, at least to where it and not the stability limits the
-#: steps, and the least one.
+#: A tolerance is divided by the first number, and then cut to between the third and the second:
+#: from the second on the tolerance limits the steps, and not the stability.
 _SHARPER, _SHARP, _LEAST = 100.0, 1e-9, 1e-13
 
 #: Tolerance by default.
@@ -120,6 +120,7 @@ def errors_of(answer: Answer, other: Answer) -> Errors:
 
 
 def _not_zero(value: float) -> float:
+    """Return a peak to divide by: 1 where it is zero."""
     return value if value > 0 else 1.0
 
 
@@ -158,14 +159,16 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
 def answer_of(run: Any, times: Array, driven: bool = False, parts: int = 1) -> Answer:
     """Return the compared part of a result at some times.
 
-    `driven`: by displacement. `parts`: increments of a static path for each one between the times.
+    `driven`: whether the path was driven by displacement, so that its response is the force.
+    `parts`: number of increments into which each increment of a static path was cut.
     """
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]
     histories = [np.array(values) for values in (response, run.base_action, taken)]
     if not run.dynamic:
-        # Rows of corners and of the start stand between the points of the path.
+        # Rows of corners and of the start stand between the points of the path. It begins at -1 and
+        # has its point i at time i; cut into parts, the same point is at parts (i + 1) - 1.
         wanted = parts * (times + 1) - 1
         places = np.searchsorted(time, wanted[wanted <= time[-1]])
         histories = [values[places] for values in histories]
@@ -230,7 +233,7 @@ class ErrorEstimate:
 def refined_error(result: Any) -> Errors:
     """Return the differences of a result from that of the next finer setting."""
     with unwarned():
-        # They were told with the result itself.
+        # The warnings were told with the result itself.
         if result.dynamic:
             run, _ = march(result.structure, _finer(result))
         else:
@@ -256,6 +259,7 @@ def refined_error(result: Any) -> Errors:
 def _finer(result: Any) -> dict[str, Any]:
     """Return the keywords of `time_history` for the next finer setting."""
     call, about = dict(result.call), result.summary
+    # The method that "auto" chose stays, with its treatment of events.
     method = METHODS[about["method"]]
     if call.get("method", "auto") == "auto":
         call.pop("tolerance", None)
@@ -267,9 +271,10 @@ def _finer(result: Any) -> dict[str, Any]:
     if method.adaptive:
         tolerance = call.get("tolerance", _USUAL_TOLERANCE)
         sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
-        # Where there is none that is much sharper, the distance to one that is not bounds it.
+        # If no tolerance is much sharper, the distance to a run with a larger one bounds the error.
         return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
     if "every" in call:
+        # Steps are half as long, and the rows stay at the same times.
         call["every"] *= 2
     if "dt" in call:
         return call | {"dt": call["dt"] / 2}

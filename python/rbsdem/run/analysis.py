@@ -136,6 +136,7 @@ class BuildingModes(Tabular):
 
 
 def _building_modes(building: Building, count: int | None) -> BuildingModes:
+    """Return the modes of a building; participations are shares of its mass or inertia."""
     answer = _core.evaluate("modes", made=building._made, count=count)
     omega, floors = answer.values[1:], len(building.storey_heights)
     x, y, rotation, mass, moved = np.split(answer.rows.T, np.cumsum([building.n] * 3 + [3]))
@@ -158,10 +159,11 @@ def _building_modes(building: Building, count: int | None) -> BuildingModes:
 
 
 def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
+    """Return the modes of a frame; a participation is the share of its mass that moves along x."""
     answer = _core.evaluate("modes", made=frame._made, count=count)
     omega = answer.values[1:]
     x, y, rotation, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
-    share = mass[0] / (frame.parts.mass or 1.0)  # none moves along x
+    share = mass[0] / (frame.parts.mass or 1.0)  # 1: no mass moves along x
     return FrameModes(
         omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, rotation, mass[0].copy(), share, frame
     )

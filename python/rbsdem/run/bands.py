@@ -52,13 +52,13 @@ _SLENDER = 2.0, 3.0
 #: its work is in proportion: that of the tests is 0.17 and more.
 _LEAST_WORK = 0.15
 
-#: Below this a ratio of bars or ties is none.
+#: Ratios of bars or ties below this count as this one: the logarithm of 0 is none.
 _NONE = 1e-3
 
-#: Differences of `features_of` that count as 1.
+#: Differences of the values of `features_of` that count as a distance of 1.
 _SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
 
-#: Parameters of degradation, and whether more of them is more of it.
+#: Parameters of degradation with 1 where a larger value degrades faster, -1 where slower.
 _FASTER = ("fatigue", "wear", "shear_decay", "core_softening", "cover_softening")
 _DEGRADATION = dict.fromkeys(_FASTER, 1) | {"shear_endurance": -1}
 
@@ -115,6 +115,7 @@ def scatter_of_tests(*, walls: bool = False) -> Scatter:
 
 
 def _frozen(value: Any) -> Any:
+    """Return lists of json as tuples, also those within lists."""
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
@@ -445,7 +446,12 @@ def band(
 
 
 def _beyond(column: LayeredColumn, scatter: Scatter) -> tuple[float, ...]:
-    """Return by what bands and intervals are wider than inside the range of the tests."""
+    """Return by what bands and intervals are wider than inside the range of the tests.
+
+    First the factor of the band, then powers of the factors of three intervals: largest force,
+    work and drift.
+    """
+    # A column within the range has no warnings.
     if not column.warnings:
         return (1.0, 1.0, 1.0, 1.0)
     small = column._drawing.section.depth < RANGE["depth"][0] * (1.0 - 1e-9)
@@ -482,6 +488,7 @@ def sample(
                 f"band: {name} of this column is not that of its model, whose scatter is known; "
                 "change parameters by with_parameters"
             )
+    # Scatter from laboratory to laboratory and from test to test, taken together.
     sizes = [math.hypot(*two) for two in (scatter.strength, scatter.stiffness, scatter.degradation)]
     rows = np.empty((number, displacement.size))
     for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
@@ -589,7 +596,7 @@ def _interval(
     least: float = math.nan,
     scale: float = 0.0,
 ) -> Interval:
-    """Return a value with its interval; `least` is what it exceeds if it is not known.
+    """Return a value with its interval; `least` is what it exceeds if it is not known (NaN).
 
     The ends are in proportion to the value, or to `scale` where that is more: a number that can
     come near zero is not known the better for it. Outside the range of the tests the logarithms of
@@ -604,7 +611,7 @@ def _interval(
 
 
 def _degraded(column: LayeredColumn, factor: float) -> LayeredColumn:
-    """Return the column with faster degradation."""
+    """Return the column with degradation that is faster by a factor."""
     now = column._drawing.parameters.values
     return changed_column(column, {name: now[name] * factor**w for name, w in _DEGRADATION.items()})
 

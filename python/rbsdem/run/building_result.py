@@ -50,12 +50,12 @@ class FrameOfBuilding(FrameResult):
 
     @property
     def error_estimate(self) -> ErrorEstimate:
-        """That of the building."""
+        """Error estimate of the building."""
         estimate: ErrorEstimate = self.building_result.error_estimate
         return estimate
 
     def refined_error(self) -> Errors:
-        """Return that of the building."""
+        """Return the errors of the building, measured by a finer setting."""
         errors: Errors = self.building_result.refined_error()
         return errors
 
@@ -114,6 +114,7 @@ class BuildingResult(Result):
         return self._of_planes(2)
 
     def _of_planes(self, at: int) -> Array:
+        """Return the sum of the planes' shears: along x (`at` = 0), along y (1), the torque (2)."""
         shares = [(*plane.direction, plane.arm)[at] for plane in self.building.planes]
         return np.asarray(self.plane_shear @ np.array(shares))
 
@@ -184,6 +185,7 @@ class BuildingResult(Result):
         return {plane.name: self.frame(plane.name) for plane in self.building.planes}
 
     def _cut(self, plane: Plane) -> FrameResult:
+        """Return the response of a frame: the channels of its own nodes, members and springs."""
         building, parts = self.building, self.building.parts
         prefix, frame = f"{plane.name}:", self.building.frame_of(plane.name)
         channels = dict(self.channels)
@@ -195,7 +197,7 @@ class BuildingResult(Result):
         at = [of_node.get(prefix + node, -1) for node in frame.parts.nodes]
         for name in OF_NODES:
             if name in channels:
-                # The last is none of the frame: a foot without a column.
+                # A foot without a column is no node of the building: its place -1 takes the zeros.
                 padded = np.column_stack((channels[name], np.zeros(self.time.size)))
                 channels[name] = padded[:, at]
         columns = [i for i, member in enumerate(parts.members) if member.startswith(prefix)]
@@ -226,7 +228,7 @@ class BuildingResult(Result):
         return result
 
     def may_have_lost(self, displacement: float = np.inf) -> list[str]:
-        """Return the columns of all frames that may have lost their axial load, as theirs do."""
+        """Return what `FrameResult.may_have_lost` finds in all frames, with the frame's name."""
         return [
             f"{name}:{member}"
             for name, result in self.frames.items()
@@ -245,7 +247,7 @@ class BuildingResult(Result):
 
     @cached_property
     def both_planes(self) -> dict[str, float]:
-        """Columns that are beyond yield in both planes at once, and the time of the first row."""
+        """Columns that are beyond yield in both planes at once, each with the time of the first."""
         first_beyond: dict[str, float] = {}
         path = self.path
         shared = self.building.axial_of

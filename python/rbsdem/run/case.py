@@ -226,7 +226,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         drawings += [{}] if name == "drawing" else []
         if drawings:
             drawings[-1].setdefault(name, []).append(values_of)
-    # Of springs and of what a drawing has there are several.
+    # Springs and parts of a drawing stand several times, and are read from `groups`.
     last_of = {name: values_of[-1] for name, values_of in groups.items()}
     settings = _core.typed("analysis", last_of.get("analysis", {}))
     settings |= _core.typed("output", last_of.get("output", {}))
@@ -253,6 +253,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         return _case_of(frame, last_of, settings, time, values, acting, more)
     column = _core.typed("column", last_of["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))
+    # Joint 0 is beneath a footing.
     beneath = {name: column.pop(f"{name}_0", None) for name in SPRING_GROUPS}
     footing = {
         name: column.pop(f"footing_{name}")
@@ -283,7 +284,11 @@ def _case_of(
     acting: Any,
     more: dict[str, Any],
 ) -> Case:
-    """Return the case of a structure and of the loadings that act."""
+    """Return the case of a structure and of the loadings that act.
+
+    `values` has a column for each name in `_DRIVES`; `acting` says which of them act. `groups` has
+    the values of the last group of each name, `more` the other fields of `Case`.
+    """
     loads: dict[str, Any] = {
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
@@ -400,7 +405,7 @@ def read_result(path: str | os.PathLike[str]) -> ColumnResult | FrameResult | Bu
 
 
 def _together(value: Any, arrays: dict[str, Any]) -> Any:
-    """Return the value that `_apart` took apart."""
+    """Return a value with its arrays, which the saving of a result has put aside by their names."""
     if not isinstance(value, dict):
         return value
     if set(value) == {"array"}:
@@ -409,6 +414,7 @@ def _together(value: Any, arrays: dict[str, Any]) -> Any:
 
 
 def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the record of a saved result (json in the array "about"), and its other arrays."""
     with open(path, "rb") as opened, np.load(opened, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
     about: dict[str, Any] = json.loads(str(arrays.pop("about")))

@@ -75,7 +75,7 @@ class ColumnResult(Result):
 
     @property
     def base_action(self) -> Array:
-        """Moment of the lowest joint, which is compared [N m]."""
+        """Moment of the lowest joint, by which results are compared [N m]."""
         return self.moment[:, 0]
 
     @property
@@ -92,8 +92,8 @@ class ColumnResult(Result):
     def elongation(self) -> Array:
         """Growth of the column's axis from the openings of its joints [m], shape (steps,).
 
-        Negative values are a shortening. It does not hold what the turning of the bodies takes from
-        the height of the top, which is in `top`.
+        Negative values are a shortening. The height that the top loses as the bodies turn is not
+        part of it, but of `top`.
 
         Raises
         ------
@@ -160,6 +160,7 @@ class ColumnResult(Result):
         return strains_of(joint, self.time, [y for y, _ in spring.layers], known, deformation)
 
     def _check_openings(self) -> None:
+        """Raise `InputError` if there are layered joints, and their openings were not kept."""
         layered = any(isinstance(spring, Layered) for spring in self.column.joints("flexure"))
         if self.rest is None and layered:
             raise InputError(
@@ -203,6 +204,7 @@ class ColumnResult(Result):
         return np.asarray(moved + self.channels["ground_acceleration"])
 
     def _kept(self, channel: str, name: str) -> Array:
+        """Return a channel of the motion of the top; messages call it `name`."""
         if not self.dynamic:
             raise InputError(f"{name}: nothing moves in a static path; use time_history")
         if channel not in self.channels:
@@ -213,9 +215,9 @@ class ColumnResult(Result):
     def residual_drift(self) -> float:
         """Drift ratio that is left at the end.
 
-        In time that of the last row, as in the table of an ensemble: let the motion end with rest,
-        so that the swing has died away. Of a static path the one at the last zero of the force, NaN
-        if the force never returns to zero.
+        Of a response in time it is the drift in the last row, as in the table of an ensemble: let
+        the motion end with rest, so that the swing has died away. Of a static path it is the drift
+        at the last zero of the force, NaN if the force never returns to zero.
         """
         if not self.displacement.size:
             return math.nan
@@ -250,7 +252,7 @@ def _last_zero(displacement: Array, force: Array) -> float:
     if force[-1] == 0:
         return float(displacement[-1])
     changes = np.flatnonzero(force[1:] * force[:-1] <= 0)
-    # The start has no force either, and is no return.
+    # No return begins in a row without force: at the start, or at a zero found from the row before.
     changes = changes[force[changes] != 0]
     if changes.size == 0:
         return math.nan

@@ -31,11 +31,12 @@ CHANNELS = {
     "axial_spring": ("opening", "axial_force"),
 }
 
-#: Share of the strength in shear, and of M/V, from which on an end with another M/V is told.
+#: Shares of the strength in shear, of members and of walls, from which a note tells of an end with
+#: another M/V; the relative difference of M/V that is told.
 _TELLING, _TELLING_OF_WALLS, _OFF_SPAN = 0.5, 0.1, 0.2
 
-#: Name of the event where a member has reached its strength in shear, behind which it falls, and
-#: the rules of springs that do.
+#: Name of the event where a member has reached its strength in shear, beyond which its force falls,
+#: and the rules of shear springs whose force falls there.
 FAILS, _FALLING = "shear_failure", ("peak_oriented", "pinching")
 
 #: Names of criteria of layers among those of springs.
@@ -223,7 +224,11 @@ class FrameResult(Result):
         return rotations
 
     def _chord(self, member: MemberGeometry, turned: Array | None = None) -> Array:
-        """Return the clockwise rotation of the chord of a member [rad]."""
+        """Return the clockwise rotation of the chord of a member [rad], shape (rows,).
+
+        The chord joins the ends of the clear length, which lie off the nodes by the rigid lengths.
+        `turned` are the rotations of these lengths [rad], by default those of the nodes.
+        """
         nodes = [member.start, member.end]
         turned = self.node_rotation[:, nodes] if turned is None else turned
         across = self.x[:, nodes] * member.normal[0] + self.y[:, nodes] * member.normal[1]
@@ -305,6 +310,7 @@ class FrameResult(Result):
         of the two lines up to the largest force.
         """
         answer = _core.evaluate("modes", made=self.frame._made, count=1)
+        # values: the stable step, then omega; rows: x, y and rotations of the n nodes, then masses.
         periods = {"uncracked": 2 * np.pi / float(answer.values[1])}
         if not self.dynamic:
             u, v = self.displacement - self.displacement[0], self.base_shear - self.base_shear[0]
@@ -340,7 +346,7 @@ class FrameResult(Result):
     def _above_floors(self, names: Collection[str] | None = None) -> tuple[Array, Array]:
         """Return storey shears, (rows, storeys), and dead loads above, (storeys,) [N].
 
-        Of all members, or of some.
+        Of all members, or of those in `names`.
         """
         count, parts = len(self._storeys()), self.frame.parts
         level = self.frame.floor_levels
@@ -372,7 +378,7 @@ class FrameResult(Result):
         return np.column_stack((self.x[:, at], self.y[:, at], self.node_rotation[:, at]))
 
     def member(self, name: str) -> MemberHistory:
-        """Return how a member goes.
+        """Return the history of a member.
 
         Parameters
         ----------
@@ -419,7 +425,10 @@ class FrameResult(Result):
         return np.asarray(np.stack([sway + load * clear * s for s in (-0.5, 0.5)], axis=2))
 
     def _plastic(self, name: str, turned: Array) -> Array:
-        """Return rotations beyond those at the first yield of an end to each side."""
+        """Return the chord rotations beyond those at the first yield of an end to each side [rad].
+
+        `turned` are the chord rotations of the two ends, shape (rows, 2).
+        """
         plastic, path = np.zeros_like(turned), self._measured
         at = self.frame.parts.members.index(name)
         for i in self._springs_in.get(name, []):
@@ -454,7 +463,7 @@ class FrameResult(Result):
 
     @cached_property
     def _springs_in(self) -> dict[str, list[int]]:
-        """Numbers of the springs of each member in that list."""
+        """Places of the springs of each member in the list `_springs`; panels belong to nodes."""
         numbers: dict[str, list[int]] = {}
         for i, (spring, _, _) in enumerate(self._springs):
             if spring.group != "panel":
@@ -463,10 +472,10 @@ class FrameResult(Result):
 
     @cached_property
     def _reached(self) -> list[list[tuple[Landmark, float | None]]]:
-        """Landmarks of each spring of that list, and where they are reached first.
+        """Landmarks of each spring of the list `_springs`, and the row where each is reached first.
 
-        In a row, or between two with the share of the way; None if they are not, or only by a
-        member that is lost.
+        Row 3.5 is half way between rows 3 and 4; None if the landmark is not reached while the
+        member still carries load.
         """
         openings = {
             (spring.member, spring.position): values
@@ -500,7 +509,7 @@ class FrameResult(Result):
         Cracking, yield and cap of each side, "shear_failure" where a shear spring that loses its
         strength behind it has reached that; of drawn members spalling, where an outer layer of
         concrete has lost its strength, of drawn walls spalling at 0.004, "web_yield", "crushing",
-        "bar_buckling" and "bar_fracture" as of one that stands alone; of the struts of infills
+        "bar_buckling" and "bar_fracture" as of a single wall; of the struts of infills
         (group "infill") cracking, cap and residual; failures of members. A static path is looked
         at in all of its corners, whichever of its rows were kept (`path`); a response in time in
         its rows.
@@ -508,7 +517,7 @@ class FrameResult(Result):
         path = self._measured
         reached = path._found_events()
         times, own_times, kept = np.array([at for _, at, _ in reached]), path.time, self.time
-        # The row at or behind each, as not all rows may be kept.
+        # The first kept row at or after each event.
         rows = np.searchsorted(kept, times - 1e-12 * np.abs(times))
         rows = np.minimum(rows, kept.size - 1)
         columns = (path.displacement, path.drift, path.loop_force)
@@ -524,7 +533,7 @@ class FrameResult(Result):
         )
 
     def _found_events(self) -> list[tuple[str, float, dict[str, Any]]]:
-        """Return name, time and place of the limit states that the rows reach."""
+        """Return name, time and place (fields of `LimitState`) of states that the rows reach."""
         reached_states: list[tuple[str, float, dict[str, Any]]] = []
         times, struts = self.time, self.frame.struts
         for (spring, _, _), reached in zip(self._springs, self._reached, strict=True):
@@ -542,7 +551,7 @@ class FrameResult(Result):
             where["member"]: at for what, at, where in reversed(reached_states) if what == FAILS
         }
         wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at.items()]
-        # A member whose spring fails in shear is told by that.
+        # A shear failure by drift is told only if the spring of the member has not failed before.
         wholes += [
             (name, what, at)
             for name, what, at in self._failures()
@@ -564,9 +573,10 @@ class FrameResult(Result):
         return reached_states
 
     def _failures(self, factor: float = 1.0) -> list[tuple[str, str, float]]:
-        """Return members that fail in shear, and that lose their axial load on a static path.
+        """Return member, event and time of shear failures, and of axial failures on a static path.
 
-        With a factor of the drift at axial failure those that would lose it there, in time too.
+        With a `factor` on the drift at axial failure, members that would lose their axial load at
+        that drift are returned, of a response in time too.
         """
         failures, lost, times, landmarks = [], self._lost_at, self.time, self.frame.landmarks
         for at, (name, kind) in enumerate(self.frame.kinds.items()):
@@ -583,6 +593,7 @@ class FrameResult(Result):
                 failures.append((name, FAILS, float(times[rows[0]])))
             load = np.maximum(self.member_axial[:, at], 0.0)
             limit = factor * kind.failure_drift
+            # The drift at axial failure, failure_drift/(1 + N/failure_load), falls with the load.
             falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= limit)
             fallen = np.flatnonzero(falls & np.logical_or.accumulate(failed))
             if fallen.size and (factor != 1.0 or not self.dynamic):
@@ -637,7 +648,7 @@ def _first_row(beyond: Array) -> float | None:
     if not rows.size:
         return None
     row = int(rows[0])
-    # A path stands on it in its corner.
+    # A static path has a corner at the limit: the row stands on it, up to round-off.
     if not row or beyond[row] <= 2.0 - _REACHED:
         return float(row)
     before, there = beyond[row - 1 : row + 1].tolist()
@@ -667,6 +678,7 @@ def _at(row: float, values: Array) -> float:
 
 
 def _event_name(spring: FrameSpring, point: Landmark) -> str:
+    """Return the name of an event; the yield of a shear spring that falls there is a failure."""
     fails = spring.group == "shear" and spring.rule in _FALLING and point.name == "yield"
     return FAILS if fails else point.name
 
@@ -674,8 +686,8 @@ def _event_name(spring: FrameSpring, point: Landmark) -> str:
 def shear_span_note(result: FrameResult) -> str:
     """Return a note on ends whose M/V is not that which their strength in shear was found for.
 
-    At the largest shear force of each direction, where it is more than half of that strength, of a
-    wall a tenth: the joint at its foot is for that M/V too.
+    M/V is taken at the largest shear force of each direction, if this force is more than half of
+    the strength, of a wall a tenth: the joint at the foot of a wall was made for that M/V too.
     """
     frame, off_spans = result.frame, []
     moments = np.stack((result.moment_from, result.moment_to), axis=2)

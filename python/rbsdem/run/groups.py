@@ -42,7 +42,7 @@ _DRAWN = ("ends", "panel_hoops", "live_share", "self_weight", "mass", "wall_span
 _OF_FLOORS = ("dead_load", "live_load", "mass")
 #: Keys of a column that is drawn which are arguments of `rbsdem.section.column`.
 _OF_DRAWN = ("mass", "n", "axial_height", "top", "footing")
-#: Keys of the location of a spring.
+#: Keys of a spring that are no parameters of its rule: the rule itself, and where it stands.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "position", "id")
 #: Classes of the groups that refer to steels.
 _PARTS: dict[str, type] = {
@@ -147,6 +147,7 @@ def drawn_column(groups: Groups, keywords: Mapping[str, Any]) -> Column:
 
 
 def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
+    """Return the parameters of a version; of another version than this one `changes` has all."""
     made = parameters().with_values(**changes)
     if version != VERSION and set(made.values) - set(changes):
         raise InputError(
@@ -179,6 +180,7 @@ def section_of(groups: Groups) -> Section:
         if "steel" in values:
             values["steel"] = steels[values["steel"]]
         else:
+            # Of the first steel.
             parts["steel"] = next(iter(steels.values()), None)
         row = Bars(**values)
         parts[face] = row if face == "side" else (*parts.get(face, ()), row)
@@ -189,6 +191,7 @@ def section_of(groups: Groups) -> Section:
             parts[name] = part(**values | used)
     known = {field.name for field in fields(kind)}
     for name in (*sizes, *parts):
+        # One class serves solid and hollow shapes; fields of walls are for hollow ones.
         solid = not shape.startswith("hollow")
         if name not in known or (solid and name in ("wall", "side_wall", "inner_layout")):
             raise InputError(f"section: {name} is not for shape = {shape!r}; remove it")
@@ -210,6 +213,7 @@ def _wall(groups: Groups, sizes: dict[str, Any], steels: Mapping[int | None, Ste
                 values["hoop_diameter"], values["hoop_spacing"], steels[values["steel"]], **legs
             )
         sign = -1.0 if side == "start" else 1.0
+        # Distances from the outer face of the element; y points to the end of the wall.
         of_end: Any = [
             (round(half - sign * y, 9), a, steels[int(i)]) for y, a, i in rows if sign * y > 0.0
         ]
@@ -264,7 +268,7 @@ def _layers(group: Mapping[str, Any], springs: Mapping[int, Spring]) -> list[tup
 def springs_of_joints(groups: Groups, last: int) -> dict[str, Any]:
     """Return the springs of a column, one for all joints or one for each from 1 to the last.
 
-    Those of joint 0, beneath a footing, have its number in their names.
+    Springs of joint 0, beneath a footing, have names as "shear_0".
     """
     springs = _layer_springs(groups)
     layers = {_joints(group): _layers(group, springs) for group in groups.get("layers", [])}
@@ -358,6 +362,7 @@ def building_in_plan(groups: Groups, drawings: Sequence[Groups] = ()) -> Buildin
 
 
 def _damping(groups: Groups) -> Damping | None:
+    """Return the damping of the last group of this name, or None."""
     given = groups.get("damping")
     return Damping(**_core.typed("damping", given[-1])) if given else None
 
@@ -414,7 +419,7 @@ def building_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Building:
     for node in _nodes({**groups, "node": plain}, 0):
         plane = in_plane[node.name]
         name = node.name.removeprefix(f"{plane}:")
-        # Alone, too, its floors are rigid.
+        # The floors of a frame are rigid also where the frame is solved alone.
         first = leaders.setdefault((plane, node.floor or 0), name)
         tied = first if node.floor and first != name else ""
         nodes_of.setdefault(plane, []).append(replace(node, name=name, moves_with=tied))
@@ -474,11 +479,12 @@ def _drawn_section(groups: Groups) -> Section:
         _parameters(about["version"], {})
         return section_of(groups)
     except InputError as error:
-        # Of several drawings that which is meant
+        # The message names the drawing.
         raise error.of(f"drawing {about['name']!r}") from None
 
 
 def _losses(groups: Groups) -> dict[str, float]:
+    """Return the times at which members are taken away [s], by member."""
     return {group["member"]: group.get("time", 0.0) for group in groups.get("loss", [])}
 
 
@@ -508,6 +514,7 @@ def _kinds(groups: Groups, drawings: Sequence[Groups]) -> dict[str, Any]:
 def _kind(stated: dict[str, Any], groups: Groups, sections: Mapping[str, Section]) -> FrameMember:
     """Return a kind of members with its springs, and the sections that they were made of."""
     springs: dict[str, Any] = {}
+    # Springs without a position: flexure at both ends, shear at midspan.
     for group, usual in (("flexure", [0.0, 1.0]), ("shear", [0.5])):
         for spring in groups.get(group, []):
             if spring.get("kind") == stated["name"]:
@@ -517,7 +524,7 @@ def _kind(stated: dict[str, Any], groups: Groups, sections: Mapping[str, Section
     for spring in groups.get("axial_spring", []):
         if spring.get("kind") == stated["name"]:
             springs["axial_spring"] = _spring(spring)
-    # A rigid kind has none of them.
+    # A rigid kind states none of these three, which have no effect there.
     values: dict[str, Any] = dict.fromkeys(("modulus", "area", "inertia"), 1.0)
     values |= _core.typed("member_kind", stated) | springs
     keys = ("section", "section_to", "core_layers", "concrete_length", "bar_length")
@@ -554,7 +561,11 @@ def _layered(spring: dict[str, Any], groups: Groups) -> Layered:
 
 
 def _pair(group: Mapping[str, Any], line: str, storey: str) -> tuple[Any, int]:
-    """Return the place that a group of a grid names, as `Frame.grid` takes it."""
+    """Return the place that a group of a grid names, as `Frame.grid` takes it.
+
+    `line` and `storey` are the names of the keys; the plural of `line` has a word for several
+    lines, 0 stands for all.
+    """
     word = group.get(f"{line}s", "all")
     return int(group.get(line, 0)) if word == "all" else word, int(group.get(storey, 0))
 
@@ -567,7 +578,7 @@ def _cells(
     for values in groups.get(group, []):
         cell = _cell(values, kinds)
         for place in places_of(_pair(values, key, "storey"), group, lines):
-            # The last that fits counts.
+            # The last group that names a place counts.
             cells.pop(place, None)
             cells[place] = cell
     return cells
@@ -588,6 +599,7 @@ def _cell(group: Mapping[str, Any], kinds: Mapping[str, Any]) -> Any:
 
 
 def _by_floor(name: str, storeys: int, groups: Groups) -> list[Any]:
+    """Return a value of the groups &floor for each floor; a list of one if all are the same."""
     values: list[Any] = [0.0] * storeys
     for group in groups.get("floor", []):
         if not 0 <= (floor := int(group.get("floor", 0))) <= storeys:

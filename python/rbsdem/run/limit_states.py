@@ -196,7 +196,7 @@ def limit_states(result: Any) -> LimitStates:
 
 
 def _of_frame(result: Any) -> dict[str, LimitState]:
-    """Return the first event of each kind."""
+    """Return the limit states of the first events of a frame, by name."""
     first: dict[str, LimitState] = {}
     path = result.path
     for event in path.events:
@@ -210,7 +210,7 @@ def _of_frame(result: Any) -> dict[str, LimitState]:
 
 
 def _of_column(result: Any) -> dict[str, LimitState]:
-    """Return the first criterion of each state that is met."""
+    """Return the limit states of a column, by name, each where the first of its criteria is met."""
     watched, joints = criteria(result.column), result.column.joint_numbers
     path = result.path
     if any(criterion.opening for criterion in watched):
@@ -229,7 +229,10 @@ def _of_column(result: Any) -> dict[str, LimitState]:
 def _in_time(
     result: Any, criterion: Criterion, time: float, displacement: float
 ) -> LimitState | None:
-    """Return the limit state that the steps of an analysis in time have reached."""
+    """Return the limit state of a criterion that was met in a step of an analysis in time.
+
+    `time` [s] and `displacement` of the top [m] are where the solver met it; NaN: it did not.
+    """
     if math.isnan(time):
         return None
     row = float(np.interp(time, result.time, np.arange(result.time.size)))
@@ -239,6 +242,7 @@ def _in_time(
 
 
 def _in_rows(result: Any, path: Any, criterion: Criterion, at: int) -> LimitState | None:
+    """Return the limit state of a criterion of joint `at` (from 0) that rows of the path meet."""
     values, threshold = criterion.values(path, at), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
@@ -251,7 +255,7 @@ def _in_rows(result: Any, path: Any, criterion: Criterion, at: int) -> LimitStat
 
 
 def _losses(result: Any) -> list[LimitState]:
-    """Return where a fifth of the strength of a side is lost first, as the comparison has it."""
+    """Return where a side first loses a fifth of its strength, as `rbsdem.curves.strength_loss`."""
     path = result.path
     row, loss = strength_loss_point(path.displacement, path.loop_force, share=_LOSS)
     if math.isnan(row):
@@ -265,9 +269,9 @@ def _losses(result: Any) -> list[LimitState]:
 def _axial_failure(result: Any, first: dict[str, LimitState]) -> list[LimitState]:
     """Return where a column loses its axial load.
 
-    A column whose shear spring has yielded does at the drift at which the friction along the shear
-    crack carries the load no more (`rbsdem.section.strength.axial_failure_drift`), a round one with
-    hoops, however it fails, at the latest at its `round_axial_failure_drift`.
+    A column whose shear spring has yielded loses it at the drift at which the friction along the
+    shear crack carries the load no more (`rbsdem.section.strength.axial_failure_drift`). A round
+    one with hoops, however it fails, loses it at the latest at its `round_axial_failure_drift`.
     """
     column = result.structure
     if not isinstance(column, LayeredColumn):
@@ -359,6 +363,7 @@ class Hinge:
 
     @property
     def _length(self) -> float:
+        """Length of the hinge [m]; `InputError` if it is not known."""
         if self.length is None:
             raise InputError(
                 f"joint {self.joint} was not made from a section, and the length of its hinge is "
@@ -396,7 +401,7 @@ def hinge(result: Any, joint: int, length: float | None) -> Hinge:
 
 
 def _yield_rotation(result: Any, at: int, yields: list[Criterion]) -> tuple[float, float]:
-    """Return the rotations at yield to both sides."""
+    """Return the rotations at yield of joint `at` (from 0) to both sides [rad]; inf if none."""
     if not any(criterion.opening for criterion in yields):
         positive, negative = (
             min((c.threshold for c in yields if side * c.rotation > 0), default=math.inf)

@@ -28,10 +28,14 @@ P = ParamSpec("P")
 
 
 class Analysis(Protocol[P]):
-    """An analysis: what it returns depends on the structure."""
+    """An analysis: what it returns depends on the structure.
+
+    Every analysis takes the structure as its first argument, `column`, also where it is a frame.
+    """
 
     @overload
     def __call__(self, column: Column, *arguments: P.args, **options: P.kwargs) -> ColumnResult: ...
+    # A Building is a Frame with another result: it stands first, and type checkers see an overlap.
     @overload
     def __call__(  # type: ignore[overload-overlap]
         self, column: Building, *arguments: P.args, **options: P.kwargs
@@ -68,9 +72,8 @@ def cyclic(
 
     With `kinematics` "small" and "pdelta" the path goes from event to event (a spring reaches the
     end of its line) without increments or tolerance, or by `method="newton"` from point to point.
-    With "finite", and where the axial load
-    varies, equilibrium is solved for at each point and at each event. The path starts at zero, or
-    in the state that another analysis ended in.
+    With "finite", and where the axial load varies, equilibrium is solved for at each point and at
+    each event. The path starts at zero, or in the state that another analysis ended in.
 
     Parameters
     ----------
@@ -103,11 +106,12 @@ def cyclic(
     corners : bool, optional
         Whether to keep rows between the points too: where a spring leaves its line, or a leap ends.
     method : {"static", "newton"}, optional
-        From event to event (the default), or in leaps from point to point by Newton's method, which
-        takes large drawn frames a small part of the time. In a leap every spring follows its rule
-        exactly, in one direction. A leap is halved where springs that turn in it may change the
-        force by 1e-4 of the largest one, or where work is missing; a 64th of the way that still
-        fails goes by its events. Errors are mostly below 1e-4 of the peak force
+        "static" goes from event to event (the default), "newton" in leaps from point to point by
+        Newton's method, which solves large drawn frames in a small part of the time. In a leap
+        every spring follows its rule exactly, in one direction. A leap is halved if springs that
+        reverse within it may change the force by 1e-4 of the largest force, or if the balance of
+        work is not met; where a 64th of the leap still fails, that part goes from event to event.
+        Errors are mostly below 1e-4 of the peak force
         (``studies/random_frames.py --kind leaps``); drops of the force below 2 % of it may be
         passed over. Columns with "finite", under axial loads that vary, or with "small" go from
         event to event all the same.
@@ -160,8 +164,8 @@ def cyclic(
 def reached_force(column: Structure, displacement: ArrayLike) -> tuple[Array, SolveError | None]:
     """Return the lateral forces along a path up to its end or the first that is not finite [N].
 
-    The last row of an analysis that stopped is where it failed, and left out; the error is returned
-    with the forces. No notes are told.
+    The last row of an analysis that stopped is where it failed, and is left out; the error is
+    returned with the forces. No notes are told.
     """
     path = _arguments.vector(displacement, "displacement")
     channels, _, _, error, _ = follow(column, {"displacement": path})
@@ -310,6 +314,11 @@ def _return(
     call: dict[str, Any],
     reached: Array | None = None,
 ) -> ColumnResult | FrameResult | BuildingResult:
+    """Return the result of a run and tell its notes; raise the error that ended it, if any.
+
+    `about` goes into the summary, `call` holds the keywords of the analysis, `reached` where
+    thresholds of limit states were met in time.
+    """
     arrays, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
@@ -335,10 +344,10 @@ def _return(
     return result
 
 
-#: Share of the strength that is round-off of none.
+#: Forces below this share of the strength count as zero: they are round-off.
 _ROUND_OFF = 1e-9
 
-#: Drift of a push-over that is more than a structure of small rotations has.
+#: Larger drifts of a push-over are refused: most are percentages.
 _MOST_DRIFT = 1.0
 
 
@@ -448,7 +457,8 @@ def _pushed(structure: Structure, pattern: str | None, direction: float | None) 
 def _strength_ends(displacement: Array, force: Array, side: float) -> float | None:
     """Return where the force of a path to one side has fallen to zero, if it does so.
 
-    It is straight from row to row. Where it snaps back to the other side, that is where it does.
+    The path is straight from row to row. If it snaps back to the other side, the displacement from
+    which it snaps back is returned.
     """
     u, f = side * displacement, side * force
     onward = (u[1:] > u[:-1]) & (u[1:] > 0)
@@ -456,7 +466,7 @@ def _strength_ends(displacement: Array, force: Array, side: float) -> float | No
     falls = np.flatnonzero(onward & (f[1:] < none) & (np.maximum.accumulate(f)[:-1] > 0))
     falls = falls[f[falls + 1] < f[falls]]
     if falls.size == 0:
-        # It may have ended on its way back on the other side.
+        # The path may have ended on its way back, with a force to the other side.
         return float(side * u.max()) if f[-1] < 0 < f.max() and u[-1] < u.max() else None
     i = falls[0]
     if f[i] <= 0:

@@ -211,8 +211,9 @@ class Result(_Channels):
     def citation(self) -> str:
         """Return the works behind this result as BibTeX.
 
-        Those of the rules of its springs, of its method, of the relations and tests that drawn
-        columns and members were fitted to, and rbsdem itself. Values of codes name their sources.
+        They are the works of the rules of its springs, of its method, of the relations and tests
+        that drawn columns and members were fitted to, and rbsdem itself. Values of codes name their
+        sources.
         """
         return bibtex(parts_of(self.structure, str(self.summary["method"])))
 
@@ -240,8 +241,8 @@ class Result(_Channels):
         with exact rotations, or a load that varies, it is a piece of curve. The `time` 3.5 of a
         row is half way between points 3 and 4. If the path begins before its first point, its
         beginning is the first row, at time -1. Quantities of a path are measured here, so that they
-        depend neither on `every` nor on points put on the way. The openings are kept. The same
-        analysis finds it once more when it is first asked for. A response in time is its own path.
+        depend neither on `every` nor on points put on the way. The openings are kept. The analysis
+        is run once more when the path is first asked for. A response in time is its own path.
         """
         known = vars(self)
         if self.dynamic or "_is_path" in known:
@@ -256,7 +257,7 @@ class Result(_Channels):
     def _follow_corners(self) -> Self:
         """Return a row for every corner, from the same analysis once more."""
         run = follow(self.structure, self.call, openings=self._is_column, corners=True)
-        # Where the path broke off, the result has been told of it.
+        # An error that ended the analysis was raised when the result was made.
         path = replace(self, channels=run[0])
         vars(path)["_is_path"] = True
         return path
@@ -318,8 +319,8 @@ class Result(_Channels):
     def refined_error(self) -> Errors:
         """Solve once more by the next finer setting and return the distance to it.
 
-        That is half the step, or a hundredth of the tolerance, or half of the increments of a
-        static path, by the same method. Where the error falls with the setting, as it does unless
+        The finer setting is half the step, or a hundredth of the tolerance, or half of the
+        increments of a static path, by the same method. Where the error falls with the setting, as it does unless
         the response is chaotic, it is about as large as this distance. With a tolerance that cannot
         be made much sharper it is the distance to one a hundred times as large, which is more than
         the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
@@ -411,6 +412,7 @@ class Result(_Channels):
     def _time_of(self, drift: float) -> float:
         """Return the time at which the drift of the top reaches a value first."""
         beyond = self.drift - drift
+        # Rows that are not on the side of the first row.
         crossed = np.flatnonzero(beyond * beyond[:1] <= 0)
         if not crossed.size:
             low, high = float(self.drift.min()), float(self.drift.max())
@@ -439,6 +441,7 @@ class Result(_Channels):
         See `rbsdem.curves.half_cycles`. The energy of a frame is the work of the force over the
         displacement of the top, as the loop shows it.
         """
+        # Of a static path of a column the exact work of the solver.
         done = self.path.energy["input"] if self._is_column and not self.dynamic else None
         return half_cycles(*loop_pair(self, "result"), done=done)
 

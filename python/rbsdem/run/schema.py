@@ -65,6 +65,7 @@ def _key(key: dict[str, Any]) -> dict[str, Any]:
     schema: dict[str, Any] = {"type": _TYPES.get(key["kind"], "string")}
     if key.get("choices"):
         schema["enum"] = key["choices"]
+    # "minimum" or "exclusiveMinimum", "maximum" or "exclusiveMaximum".
     for bound, name in (("least", "inimum"), ("most", "aximum")):
         if bound in key:
             first = "m" if not key.get(f"{bound}_open") else "exclusiveM"

@@ -97,6 +97,7 @@ def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> 
             [[0.5 + 0.5 * math.exp(-distance(a, test.features)) for test in given] for a in some]
         )
 
+    # Covariances of all numbers of the given tests, and of those of the column with them.
     number, size = len(given), sizes.size
     prior = np.kron(alike([test.features for test in given]), variance)
     with_column = np.kron(alike([features]), variance)
@@ -105,6 +106,7 @@ def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> 
         blocks[i, :, i, :] = test.information
     information = blocks.reshape(prior.shape)
     pull = np.concatenate([test.pull for test in given])
+    # First column: the posterior mean; the others: by what the covariance becomes smaller.
     known = np.column_stack([pull, information @ with_column.T])
     known = with_column @ np.linalg.solve(np.eye(len(prior)) + information @ prior, known)
     places = np.clip(known[:, 0], -_FARTHEST * sizes, _FARTHEST * sizes).tolist()
@@ -139,6 +141,7 @@ def told(loop: Loop) -> Told:
 
 
 def _fitted() -> list[Row]:
+    """Return the rows of the parameters that were fitted to tests: those with a spread."""
     return [row for row in table().values() if row.spread > 0]
 
 
@@ -149,7 +152,10 @@ def _sizes() -> Array:
 
 
 def _slopes(column: LayeredColumn, displacement: Array, force: Array) -> Array:
-    """Return the changes of the force along a path by each of them, shape (m, k)."""
+    """Return the changes of the force along a path with each number of `_sizes`, shape (m, k) [N].
+
+    By the logarithm of the strength, by spreads of the fitted numbers, and by shares of the rig.
+    """
     unit = _STEP * np.eye(len(_fitted()))
     moved = [path_force(_moved(column, places), displacement, rig=True) for places in unit.tolist()]
     by_numbers = [(other - force) / _STEP for other in moved]
@@ -157,7 +163,10 @@ def _slopes(column: LayeredColumn, displacement: Array, force: Array) -> Array:
 
 
 def _moved(column: LayeredColumn, places: Sequence[float]) -> LayeredColumn:
-    """Return a column whose fitted numbers are off by so many spreads of their priors."""
+    """Return a column whose fitted numbers are off by `places` spreads of their priors.
+
+    The spreads of positive numbers are those of their logarithms.
+    """
     now, values = column._drawing.parameters.values, {}
     for row, place in zip(_fitted(), places, strict=True):
         way = row.spread * place

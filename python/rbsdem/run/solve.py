@@ -156,6 +156,7 @@ def last_state(response: HasEndState) -> Array:
 
 
 def _read_state(path: str) -> Array:
+    """Return the state of a file: a head, lines with #, the count of numbers, the numbers."""
     if not Path(path).is_file():
         raise InputError(f"initial: {path}: there is no such file; check the path")
     if zipfile.is_zipfile(path):

@@ -8,7 +8,7 @@ from typing import Any, Literal, TypedDict
 
 from rbsdem import _arguments, _core
 
-#: Names of the methods in time.
+#: Names of the methods of static paths, and of those in time.
 PathMethod = Literal["static", "newton"]
 MethodName = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
 
@@ -113,10 +113,11 @@ class Method:
     responses: int
 
 
+#: Columns of the table of methods: which settings a method takes, and its numbers.
 _SETTINGS = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
+_NUMBERS = ("limit_share", "period_share", "usual_error", "largest_error")
 
 #: All methods by name.
-_NUMBERS = ("limit_share", "period_share", "usual_error", "largest_error")
 METHODS = {
     row["method"]: Method(
         name=row["method"],

@@ -63,6 +63,7 @@ def model_name(model: str, model_parameters: ModelParameters | None = None) -> s
 
 
 def _known(model: ModelParameters | None) -> ModelParameters:
+    """Return checked parameters, those of the version if none are given."""
     if model is None:
         return parameters()
     remedy = "as of rbsdem.section.parameters()"
@@ -406,6 +407,7 @@ def plastic_moments(section: Section, axial_load: float) -> Pair:
 
 @cache
 def _of_beams() -> ModelParameters:
+    """Return the parameters of members without axial load, whose bars harden and wear less."""
     fitted = parameters()
     shares = {name: share * fitted.values[name] for name, share in _BARS_OF_BEAMS.items()}
     return fitted.with_values(**shares)
@@ -441,11 +443,16 @@ def _shear(half: LayeredModel, spans: Pair) -> Pinching:
 
 
 def _elastic(section: Section) -> tuple[float, float, float]:
+    """Return E_c [Pa], gross area [m2] and depth [m], of which the elastic part is made."""
     return section.concrete_law["ec"], section.gross_area, section.depth
 
 
 def _failure(half: LayeredModel, span: float, shear: Pinching) -> tuple[float, float, float | None]:
-    """Return when a member whose hinges have yielded loses its axial load, and fails in shear."""
+    """Return at what drifts a member whose hinges have yielded fails.
+
+    The drift at axial failure under no load, the load that halves it [N], and the drift at shear
+    failure; None where bending limits the member.
+    """
     section, axial_load = half.section, half.axial_load
     drift, halves = axial_failure_law(section)
     force = nominal_moment(section, axial_load) / span
@@ -466,6 +473,7 @@ def _layered(
     shear_span: float | None,
     common: dict[str, Any],
 ) -> LayeredColumn:
+    """Return a cantilever of the layered model; `common` are its arguments for all models."""
     if n == 1:
         raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
     hinge = section, height, axial_load, n or 2
@@ -480,6 +488,7 @@ def _layered(
 def _paper(
     section: Section, height: float, axial_load: float, n: int, common: dict[str, Any]
 ) -> Column:
+    """Return a cantilever of the paper's model; `common` are its arguments for all models."""
     # Columns of high axial load are controlled by compression: they yield there.
     made = springs(section, height, axial_load, yield_rule="first")
     shear: Spring | None = made.shear

@@ -118,6 +118,7 @@ def criteria(column: Structure, names: Collection[str] = tuple(WATCHED)) -> Sequ
 
 
 def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
+    """Return the criteria of a structure for the limit states in `names`."""
     listed: list[Criterion] = []
     if isinstance(column, Frame):
         for group, states, what in (("flexure", _TURNS, "rotation"), ("shear", _SLIPS, "slip")):
@@ -146,7 +147,7 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
 
 
 def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
-    """Yield what is watched in joints of layers, which are numbered behind rotational springs.
+    """Yield the criteria of joints of layers, whose layers are numbered from `number` + 1 on.
 
     Sections stay plane: of equal layers the outermost ones are stretched most, and where no layer
     is (the slip is that of the next one) two of them give the strain.
@@ -226,7 +227,8 @@ def joint_criteria(kind: FrameMember, position: float, made: Layered) -> list[Cr
 def all_thresholds(column: Structure, openings: bool) -> Array:
     """Return the criteria of a run in numbers, those of openings only if they are kept.
 
-    Each counts for itself. A run without openings is told of the others, but cannot reach them.
+    Each criterion is a state of its own. In a run without openings those on openings stay in the
+    list, with a threshold that cannot be reached.
     """
     listed = criteria(column)
     numbers = thresholds(column, listed, range(1, len(listed) + 1))
@@ -269,6 +271,7 @@ def _of_spring(
 def _of_landmarks(
     joint: int, marks: Sequence[Landmark], where: str, names: Mapping[str, str], what: str
 ) -> Iterator[Criterion]:
+    """Yield a criterion for each landmark: on "rotation" or "slip" (`what`) of a joint."""
     for mark in marks:
         source = f"{mark.source} of {where}"
         side = float(mark.side)
@@ -323,7 +326,7 @@ def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion
             yield strain("spalling", y, _SPALLS, "0.004 at the end face of a wall", -1.0)
         else:
             yield strain("spalling", y, lost, "eps_spall of the concrete", -1.0)
-        # That of a wall is the one at y < 0.
+        # The confinement of a wall is that of its end at y < 0.
         core = section.confinement if y < 0 or not walls else section.mirrored.confinement
         if core is None:
             if walls:
@@ -361,7 +364,7 @@ def _outer_bars(
     outer: dict[tuple[float, ...], list[float]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
     layers_of_bars = [(y, layer, over) for (y, layer), part, over in rows if part == "bar"]
-    # They are in the order of the bars: at one height there may be bars of several steels.
+    # Layers of bars are in the order of `section.bars`: at one height there may be bars of several steels.
     for (y, layer, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         in_web, bows = 0.0, buckles
         if isinstance(section, WallSection):

@@ -154,7 +154,7 @@ class Frame:
 
     #: Whether other frames of its building may hold it.
     _is_part: ClassVar[bool] = False
-    #: Joints of a frame do not open by themselves.
+    #: Openings are those of axial springs, as in a column that has these.
     opens: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -194,6 +194,7 @@ class Frame:
                 self, damping=Damping(modal=_arguments.number(self.damping, "frame: damping"))
             )
         _arguments.put(self, _made=_core.Made(self._state(), self._is_part))
+        # Nodes, members and springs are in the first three lines.
         for note in self._made.text.splitlines()[3:] if NOTES_ON.get() else ():
             warn(note)
 
@@ -247,6 +248,7 @@ class Frame:
         for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
             rigid: Any = (free.get(name) or self.kinds[name]).rigid_end
             if not isinstance(rigid, tuple):
+                # A column of the first storey has no rigid length at its foot.
                 foot = places[name].kind == "column" and places[name].storey == 1
                 rigid = (0.0 if foot else rigid, rigid)
             length = float(np.hypot(*(nodes[end] - nodes[start])))
@@ -534,6 +536,7 @@ class Frame:
         ]
 
     def _floors(self) -> Iterator[Group]:
+        """Yield a group for each floor with a mass or a load, one for all if they are alike."""
         masses, loads = self.floor_mass, self.beam_load
         count = max(len(masses), len(loads))  # type: ignore[arg-type]
         for i in range(count):
@@ -642,7 +645,7 @@ class Frame:
         }  # fmt: skip
         loads = {name: grid.floors(load, name) for name, load in stated.items()}
         if self_weight is True or sum(map(np.any, loads.values())) > 1:
-            # Of one alone the solver tells.
+            # The solver sees the sum: of a single load it tells by itself.
             for name, load in loads.items():
                 told_of_small(f"frame: {name}", load, "N/m", "10 kN/m is 10e3")
         dead, live = loads["beam_load"] + loads["dead_load"], loads["live_load"]
@@ -792,6 +795,7 @@ def drawings_of(
 
 
 def _spring_of(text: str, position: float, stiffness: float) -> FrameSpring:
+    """Return a spring of a frame from "member group rule", its place (0 to 1) and stiffness."""
     member, group, rule = text.rsplit(" ", 2)
     end = "" if group == "panel" else _ENDS.get(position, f"{position:g}")
     return FrameSpring(member, group, rule, position, stiffness, end)

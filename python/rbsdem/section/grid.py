@@ -342,7 +342,7 @@ class Grid:
         return np.asarray(beams * np.array(self.bays))
 
     def weights(self, walls: dict[tuple[int, int], float], heavy: bool) -> dict[str, float]:
-        """Return the weights on the nodes of floors [N]: walls, and halves of the columns."""
+        """Return the weights on the nodes of floors [N]: walls, and half of each column if heavy."""
         weights = {}
         for i, k in self.columns:
             if not any(cell is not None for cells in self.around(i, k) for cell in cells):
@@ -426,7 +426,7 @@ class Grid:
         return {(i, k): each[k - 1][i - 1] for i, k in self.beams}
 
     def _area(self, cell: Any) -> float:
-        """Return the area of the mean section of a member; 0 of one by hand [m2]."""
+        """Return the area of the mean section of a member; 0 of a FrameMember [m2]."""
         kind = self.elastic.get(id(cell))
         return kind.area if kind is not None and is_drawn(cell) else 0.0
 
@@ -669,11 +669,12 @@ def _has_sides(section: Section) -> bool:
 
 
 def _is_slim(section: Section) -> bool:
+    """Return whether a section is as slim as those of beams."""
     return section.depth > _SLIM * section.width
 
 
 def _half_depth(cell: Any, other: Any, end: int) -> float:
-    """Return half the depth of a member [m]; of one by hand, the rigid end of the other there."""
+    """Return half the depth of a member [m]; of a FrameMember, the rigid end of the other."""
     if is_drawn(cell):
         return 0.25 * sum(part.depth for part in halves_of(cell))
     rigid = other.rigid_end if cell is not None and isinstance(other, FrameMember) else 0.0
@@ -722,5 +723,6 @@ def _made(
     spans: tuple[Pair, Pair] | None,
     ends: tuple[float, float],
 ) -> FrameMember:
+    """Return the kind of a member; equal members are made once, but for their rigid ends."""
     made = member(sections, length, axial_load=axial_load, load=load, shear_spans=spans)
     return with_rigid_end(made, ends)

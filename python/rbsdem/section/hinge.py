@@ -41,6 +41,7 @@ _GROWS_FROM = 0.05
 _LEAST_SOFTENING, _LEAST_HARDENING = 1e6, 0.0005
 # Bars endure at least as much as the widest limit of their elements may be (docs/rules.md).
 _LEAST_ENDURANCE = 103.4
+# Modulus of steel in the relations for buckling and yield [Pa].
 _ES = 200e9
 
 

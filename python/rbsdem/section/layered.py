@@ -139,6 +139,7 @@ class LayeredModel:
 
     @cached_property
     def _made_twice(self) -> dict[str, Any]:
+        """The arguments of `rbsdem.Column` for a fixed top: the half, and the half turned over."""
         with notes_off():
             half = Column(self.height, 1.0, n=self.n, axial_load=self.axial_load, **self.made)
             whole = half.double_curvature(prismatic=not self.section.symmetric)
@@ -213,8 +214,8 @@ class LayeredModel:
     def above(self, stiffness: float, low: float, high: float | None = None) -> Spring:
         """Return the spring of a joint above the hinge.
 
-        It is that of the part from `low` to `high` below the point without moment; by default of
-        one unit. The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and
+        The joint stands for the part from `low` to `high` below the point without moment, counted
+        in parts; by default for one part. The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and
         stays below yield. From a to b below the top its curvature gains in proportion to what the
         moment is above that; where all of the part has cracked, the joint in its middle turns as
         much if it cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one
@@ -440,11 +441,13 @@ class LayeredColumn(Column):
 
     @property
     def _drawing(self) -> LayeredModel:
+        """The drawing, which is never None once the column is made."""
         assert self.drawing is not None
         return self.drawing
 
 
 def _listed(springs: Any) -> tuple[Any, ...]:
+    """Return springs as a tuple, where there may be one for all joints."""
     return tuple(springs) if isinstance(springs, (list, tuple)) else (springs,)
 
 

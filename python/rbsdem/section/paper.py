@@ -399,6 +399,7 @@ def paper_columns(kinematics: Kinematics = "small", **changes: Any) -> dict[str,
 def _column(
     section: PaperSection, s: dict[tuple[str, str], float], kinematics: Kinematics
 ) -> Column:
+    """Return a column of table 3; `s` has its values by spring and parameter."""
     names = ("K_c", "D_c", "K_y", "D_y", "K_u")
     flexure: Any = {name.lower(): s["flexure", name] for name in names}
     flexure |= {"b0": s["flexure", "B_0"], "b1": s["flexure", "B_1"], "inner": "kc"}

@@ -311,7 +311,7 @@ class Building(Frame):
 
     def changed(self, **changes: Any) -> Building:
         """Return the building with other parameters in place of some of its own."""
-        # Its drawing does not have them.
+        # A drawing does not have these: it is dropped.
         drawn = {"frames", "names", "centres", "floor_mass", "inertia"}.isdisjoint(changes)
         return type(self)(**self._given | ({} if drawn else {"plan": None}) | changes)
 
@@ -353,7 +353,7 @@ class Building(Frame):
         _arguments.put(inside, kinematics=self.kinematics)
         vars(inside)["parts"] = replace(frame.parts, compression=compression, mass=self.parts.mass)
         vars(inside)["geometry"] = frame.geometry
-        # Its nodes need not be on each floor.
+        # A frame may end below the top of the building.
         heights = self.storey_heights[: int(frame.parts.floor.max())]
         vars(inside)["storey_heights"] = heights
         vars(inside)["kinds"] = {
@@ -425,7 +425,7 @@ class Building(Frame):
         return self._with_frames(changed)
 
     def without(self, *members: str) -> Building:
-        """Return the building after the loss of members: frame:C-line-storey, and so on."""
+        """Return the building after the loss of members, named as "x-1:C-2-1"."""
         lost: dict[str, list[str]] = {}
         for member in members:
             index_of(member, self.parts.members, "member")
@@ -433,6 +433,7 @@ class Building(Frame):
         return self._with_frames(lambda plane: plane.frame.without(*lost.get(plane.name, ())))
 
     def _with_frames(self, change: Callable[[Plane], Frame]) -> Building:
+        """Return the building with what `change` makes of each frame in the place of the frame."""
         places = [tuple(place)[1:] for place in self._given["frames"]]
         frames = [(change(one), *at) for one, at in zip(self.planes, places, strict=True)]
         return self.changed(frames=frames)
@@ -524,7 +525,7 @@ def _inertia_of(planes: Sequence[Plane], centres: Array) -> Array:
         floor = parts.floor[at] - 1
         away = plane.places(parts.x[at]) - centres[floor]
         if plane.along is None:
-            # On its line, wherever that is
+            # The place on the line is not known: only the distance of the line counts.
             away = away - np.outer(away @ axis, axis)
         np.add.at(inertia, floor, parts.node_mass[at] * (away**2).sum(axis=1))
     return inertia

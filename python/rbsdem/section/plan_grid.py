@@ -319,6 +319,7 @@ class PlanDrawing:
         of_building = weights.masses() | {"names": [line.name for line in cells]}
 
         def assembled(drawn: bool, **about: Any) -> Any:
+            """Return the building: elastic, or drawn under the axial loads of the elastic one."""
             frames = []
             for line, members in cells.items():
                 try:
@@ -389,13 +390,14 @@ class Weights:
             line: np.zeros((storeys, len(drawing.bays(line.along)))) for line in drawing.lines
         }
         self.nodes: dict[Line, dict[tuple[int, int], float]] = {one: {} for one in drawing.lines}
-        #: Weights of each floor with place, and second moment about themselves over the weight.
+        #: Of each floor weights [N], x and y [m], and second moments about their own centres over
+        #: the weights [m2].
         self.of_floor: list[list[tuple[float, float, float, float]]] = [[] for _ in range(storeys)]
 
     def put_panels(self, storey: int, load: float) -> None:
         """Put the load of a floor on its beams, by yield lines that bisect the corners of panels.
 
-        The trapezoid or triangle of a beam is the equal uniform load. A side without a beam leaves
+        The trapezoid or triangle of a beam becomes a uniform load of equal sum. A side without a beam leaves
         its part to the others.
         """
         d = self.drawing
@@ -450,14 +452,15 @@ class Weights:
                 self.of_floor[floor - 1].append((half, *at, 0.0))
 
     def _place(self, line: Line, along: float) -> tuple[float, float]:
+        """Return x and y of a place on a line, `along` from its start [m]."""
         place = float(along), self.drawing.offset(line)
         return place if line.along == "x" else place[::-1]
 
     def masses(self) -> dict[str, Any]:
         """Return masses, centres in plan and rotary inertia of the floors, as a building has them.
 
-        Of loads the masses are where these are; masses that are given are spread as the loads, or
-        where there are none evenly over the panels.
+        With `mass` = "from_loads" the masses are those of the loads. Masses that are given are
+        spread as the loads, or evenly over the panels of a floor without loads.
         """
         d = self.drawing
         lengths = np.array([sum(d.bays_x), sum(d.bays_y)])
@@ -515,10 +518,11 @@ def by_floor(numbers: Any, floors: int, name: str, width: int = 1, least: float 
 
 
 def _is_post(kind: Any) -> bool:
+    """Return whether a member stands for a wall across the plane, as a post between pins."""
     return isinstance(kind, FrameMember) and kind.ends == "pinned"
 
 
 def _area(member: Any) -> float:
-    """Return the area of the mean section of a member that is drawn; 0 of one by hand [m2]."""
+    """Return the area of the mean section of a member that is drawn; 0 of a FrameMember [m2]."""
     kind = elastic_kind(member)
     return float(kind.area) if kind is not None and is_drawn(member) else 0.0

@@ -399,6 +399,7 @@ def _last_useful(diagram: ShearDiagram) -> ShearPoint:
 
 
 def _rows(diagram: ShearDiagram) -> Array:
+    """Return the values of `ShearPoint` along a diagram, in its order, shape (4, points)."""
     return np.vstack([getattr(diagram, name) for name in ShearPoint.__dataclass_fields__])
 
 
@@ -514,7 +515,7 @@ def shear_spring(
     lines = {**sides[0].line}
     for side in sides[1:]:
         lines |= {f"{name}_neg": value for name, value in side.line.items()}
-    # What both sides share is that of their mean.
+    # Wear is the same for both sides: it is that of their means, in units of f_y d_y.
     unit = sum(side.line["f_y"] * side.line["d_y"] for side in sides) / len(sides)
     f_y = sum(side.line["f_y"] for side in sides) / len(sides)
     ties = sum(side.ties for side in sides) / len(sides)
@@ -627,7 +628,7 @@ def _side(
     # Behind yield it may not go up steeper than before.
     least_rise = 1.01 * (f_cap - f_y) / rise * slip
     d_cap = d_y + max(model.shear_cap * length, least_rise)
-    # The column has lost its axial load, and with it the friction in the crack.
+    # No force is left where the column loses its axial load, and with it the friction in the crack.
     lost = axial_failure_drift(section, axial_load) * length
     above = f_cap * length**3 / (3 * section.concrete_law["ec"] * section.inertia)
     shortest = max(_SHORTEST_FALL * length, _SPRINGS_BACK * above)

@@ -21,7 +21,8 @@ def beam_spans(start: Pair, end: Pair, length: float, load: float = 0.0) -> tupl
 
     The frame sways to either side: one end hogs with M-, the other sags with M+, and the shear at
     the one that hogs is (M- + M+)/L + w L/2. Under a large load the hinge that sags is in the span.
-    Against its load a member of such a shear is not looked at beyond half of its length.
+    Where the load takes nearly all of the shear of the end that sags, M/V of this end is limited to
+    half of the length, or to M/V without the load if that is more.
 
     Parameters
     ----------

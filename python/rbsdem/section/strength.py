@@ -137,6 +137,7 @@ class InteractionDiagram(Tabular):
         return np.where(np.isfinite(least + most), found, np.inf)[()]
 
     def _curve(self, design: bool) -> tuple[Array, Array]:
+        """Return axial loads [N] and moments [N m], of design or nominal."""
         if design:
             return self.design_axial_load, self.design_moment
         return self.axial_load, self.moment
@@ -212,6 +213,7 @@ _MOST_POINTS = 10_000
 
 
 def _points(points: int) -> int:
+    """Return the checked number of points of a diagram."""
     return _arguments.integer(points, "interaction: points", least=5, most=_MOST_POINTS)
 
 
@@ -333,6 +335,7 @@ def _outermost(section: Section) -> tuple[float, Steel]:
     return y, steel
 
 
+#: Strain of the extreme fibre in compression (ACI 318-19, 22.2.2.1).
 _ACI_STRAIN = 0.003
 
 
@@ -354,6 +357,7 @@ def _aci_block(section: Section) -> _Block:
 
 
 def _aci_strains(section: Section) -> Callable[[Array, Array], Array]:
+    """Return the strain as a function of neutral axis and place y [m], 0.003 at the face."""
     half = 0.5 * section.depth
     return lambda axis, y: np.asarray(_ACI_STRAIN * (1.0 - (y + half) / axis))
 
@@ -442,6 +446,7 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
     fixed = (1.0 - plateau / ultimate) * depth
 
     def strains(axis: Array, y: Array) -> Array:
+        """Return strains: the face is at `ultimate`, or further on the `fixed` fibre at eps_c3."""
         beyond = plateau * axis / np.where(axis > depth, axis - fixed, axis)
         face = np.where(axis <= depth, ultimate, beyond)
         return np.asarray(face * (1.0 - (y + half) / axis))

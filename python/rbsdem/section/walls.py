@@ -158,6 +158,7 @@ def wall_members(
             "high as the wall is thick; beyond 20 it may buckle out of its plane, which is not in "
             "the model"
         )
+    # Up to the level `elastic` the joint of layers below stands for the wall.
     made, elastic = [], 0.0
     for i, (low, high) in enumerate(pairwise(levels.tolist())):
         own = _checked_wall(each[i])
@@ -200,7 +201,8 @@ def _storey(
 ) -> FrameMember:
     """Return the kind of one storey.
 
-    The place is the span, the levels of the storey, and that from which on it bends as a whole.
+    `place` has M/V at the foot of the wall, the lower and the upper level of the storey, and the
+    level above which the storey bends [m]; `foot` is the joint of layers at its base, if any.
     """
     span, low, high, begins = place
     height, part = high - low, high - begins
@@ -218,7 +220,7 @@ def _storey(
         flexure[middle] = whole.above(stiffness, arm + 0.5 * part, arm - 0.5 * part)
     area, modulus = section.gross_area, section.concrete_law["ec"]
     layers: Any = foot[0].layers if foot else ()
-    # The joint closes by its layers, the rest by this.
+    # The layers of the joint shorten by themselves; the area makes the rest stiffer by as much.
     closes = modulus * area / sum(layer.k for _, layer in layers) if layers else 0.0
     return FrameMember(
         modulus=modulus,
