@@ -188,8 +188,8 @@ class _Drawn:
     def least_of_wall(self, drift: Callable[[float, float, float, float], float]) -> float:
         """Return the lesser drift of both directions.
 
-        `drift` is a function of length, width of the zone in compression and depth of the neutral axis
-        [m], and of the moment [N m].
+        `drift` is a function of length, width of the zone in compression and depth of the neutral
+        axis [m], and of the moment [N m].
         """
         drifts = []
         for section in (self.section, self.section.mirrored):

@@ -160,11 +160,13 @@ def _termination_as_exception() -> Iterator[None]:
 
 
 def _terminated(number: int, frame: object) -> NoReturn:
+    """Exit as a process that SIGTERM has ended."""
     del number, frame
     sys.exit(_TERMINATED)
 
 
 def _flush() -> None:
+    """Write what standard output still holds."""
     if sys.stdout is not None:  # as it is if it was closed
         sys.stdout.flush()
 
@@ -198,6 +200,7 @@ def completion(shell: str) -> int:
 
 
 def _named_keys(ctx: click.Context, param: click.Parameter, word: str) -> list[CompletionItem]:
+    """Return the groups and rules whose names begin with a word."""
     known = _core.keys()
     names = [*known["groups"], *known["rules"]]
     return [CompletionItem(name) for name in names if name.startswith(word)]

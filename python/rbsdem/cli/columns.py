@@ -237,6 +237,7 @@ def trade(
 
 
 def _tell_files(paths: Sequence[Path]) -> None:
+    """Print which files were written."""
     for path in paths:
         print(f"wrote {path}")
 
@@ -267,6 +268,7 @@ def _records(words: Sequence[str], units: str | None, pairs: bool) -> list[Recor
 
 
 def _records_of(word: str, units: str | None) -> Sequence[GroundMotion]:
+    """Return the records of a folder, a file, or of synthetic:N."""
     name, _, number = word.partition(":")
     if name == "synthetic" and not Path(word).exists():
         return synthetic(int(number) if number.isdigit() else 20)
@@ -274,6 +276,7 @@ def _records_of(word: str, units: str | None) -> Sequence[GroundMotion]:
 
 
 def _numbers(text: str, option: str, example: str) -> list[float]:
+    """Return the numbers of an option, which commas separate; errors give an example."""
     try:
         return [float(word) for word in text.split(",")]
     except ValueError:
@@ -384,6 +387,7 @@ def _own_motion(path: Path, case: Case) -> Any:
 
 
 def _part(text: str) -> tuple[int, int]:
+    """Return part and number of parts of --shard I/N."""
     part, _, parts = text.partition("/")
     try:
         return int(part), int(parts)
@@ -603,6 +607,7 @@ _OF_IDA = ["ida.csv", "fractiles.csv", "fragility.csv", "ida.png", "fragility.pn
 def _write(
     analysis: IDA, curves: Mapping[str, Fragility], frame: DataFrame, files: Sequence[Path]
 ) -> None:
+    """Write runs, fractiles and curves as csv, and two figures; `files` are those of `_OF_IDA`."""
     runs, shares, fitted, *figures = files
     analysis.runs.to_csv(runs)
     level, fractiles = analysis.fractiles()

@@ -119,6 +119,7 @@ def chosen(
 
 
 def _is_meant(row: Specimen, name: str) -> bool:
+    """Whether a word of --only is the name, file or number of a test, or a pattern of them."""
     return row.is_called(name) or fnmatch(row.name, name) or fnmatch(row.file or "", name)
 
 

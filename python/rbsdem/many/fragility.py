@@ -205,7 +205,7 @@ def _part(
     sign = 1.0 if ends[0] >= 0 else -1.0
 
     def tail(end: float, place: float) -> float:
-        """Return the integral from an end away from the centre; `place` is its distance in sigma."""
+        """Return the integral beyond an end; `place` is its distance from the centre in sigma."""
         if np.isinf(end):
             return 0.0
         product = np.exp(y + s * (end - x) - 0.5 * ((end - mu) / beta) ** 2)

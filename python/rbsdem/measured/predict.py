@@ -259,6 +259,7 @@ def predict(
     known: dict[Specimen, Prediction] = {}
 
     def one(specimen: Specimen) -> Prediction:
+        """Return the prediction of one test, moved by given tests, with band and neighbours."""
         row = _row(checked_specimen(specimen), model, name, path, limit_states, rig, options)
         column = row[1]
         if column is None or row[0].status == "failed":
@@ -316,6 +317,7 @@ def _moved(row: Prediction, learned: Learned) -> dict[str, Any]:
 
 
 def _path(displacement: ArrayLike) -> Array:
+    """Return a path of displacements [m] that changes, or raise `InputError`."""
     path = _arguments.finite_vector(displacement, "displacement")
     if path.size < 2 or not np.any(np.diff(path)):
         raise InputError("displacement: the path does not change; give one that does")
@@ -331,7 +333,11 @@ def _row(
     rig: bool,
     options: dict[str, Any],
 ) -> tuple[Prediction, Any]:
-    """Return the row of a test, and its column; an error is a row."""
+    """Return the prediction of a test, and its column; an error becomes a status of the row.
+
+    `name` is that of the model, `path` the displacements [m] in place of the measured ones, `rig`
+    whether the friction of the rig is added.
+    """
     row, column, test = Prediction(specimen, name, "completed"), None, None
     try:
         if path is None:
@@ -562,11 +568,13 @@ def _same(test: Specimen, other: Specimen) -> bool:
 
 
 def _is_round(specimen: Specimen) -> bool:
+    """Whether the section is round, an octagon, or a square with a spiral."""
     return specimen.section != "rectangular"
 
 
 @lru_cache(maxsize=4096)
 def _features(specimen: Specimen) -> tuple[float, ...]:
+    """Return the properties by which a test is compared, see `features_of`."""
     with unwarned():
         section = draw(specimen).section
     return features_of(section, specimen.length, specimen.axial_load)

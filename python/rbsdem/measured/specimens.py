@@ -48,7 +48,11 @@ _NOT_REPORTED = ("", "-", "--", "n/a", "na", "nan", "none", "not reported")
 
 @dataclass(frozen=True, slots=True)
 class _Column:
-    """Where an attribute comes from: its column, the factor to SI, whether zero is a value."""
+    """Where an attribute comes from: its column in the table, and how a text becomes a value.
+
+    Numbers are multiplied by the factor to SI, or divided by it; a zero means "not reported" unless
+    `zero`; `needed` ones must be reported.
+    """
 
     column: str
     kind: type = float
@@ -486,6 +490,7 @@ class Specimens(Tabular, Sequence[Specimen]):
         return data_frame([{**row, **row.pop("observed")} for row in rows])
 
     def _named(self, key: str) -> Specimen:
+        """Return the first specimen that is called so, or raise `InputError`."""
         for row in self._rows:
             if row.is_called(key):
                 return row
@@ -583,6 +588,7 @@ def _values(row: dict[str, str | None], record: type, where: str) -> dict[str, A
 
 
 def _condition(wanted: Any) -> Callable[[Any], bool]:
+    """Return the test of a value: a function, one of several values, or a value to be equal to."""
     if callable(wanted):
         return lambda value: bool(wanted(value))
     if isinstance(wanted, Collection) and not isinstance(wanted, str):
@@ -591,6 +597,7 @@ def _condition(wanted: Any) -> Callable[[Any], bool]:
 
 
 def _nearest(name: str, known: Sequence[str]) -> str:
+    """Return the end of a message about an unknown name: names that are like it."""
     close = get_close_matches(name, known, n=3, cutoff=0.4)
     return f"did you mean {', '.join(close)}?" if close else "see the table for the names"
 
@@ -860,6 +867,7 @@ def _rectangle(
 def _round(
     specimen: Specimen, to_bars: float, diameter: float, steel: tuple[float, float]
 ) -> list[_Bar]:
+    """Return the bars of a round section; `to_bars` is the concrete outside of them [m]."""
     radius = specimen.depth / 2 - to_bars - diameter / 2
     _check_room(radius, specimen, to_bars, diameter)
     n = specimen.longitudinal_number
@@ -871,6 +879,7 @@ def _round(
 
 
 def _check_room(left: float, specimen: Specimen, to_bars: float, diameter: float) -> None:
+    """Refuse bars that are no distance (`left` [m]) away from the middle of the section."""
     if left <= 0:
         raise InputError(
             f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "

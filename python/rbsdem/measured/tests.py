@@ -598,7 +598,7 @@ def _columns(given: object, table: NumberTable) -> tuple[int, int]:
     ]
     numbers = [i for i in range(table.columns) if i not in table.texts]
     if len(numbers) == 2 and table.find("time") is None:
-        # Of two columns, what is not the one is the other.
+        # If one of two columns is known, the other column is the other quantity.
         for i, other in ((0, 1), (1, 0)):
             if places[i] is None:
                 rest = [place for place in numbers if place != places[other]]
@@ -685,6 +685,7 @@ def _check_stated(units: tuple[str, str], table: NumberTable) -> None:
 
 
 def _check_units(length: float | None, axial_load: float | None) -> None:
+    """Refuse a length or an axial load that is likely in mm or kN."""
     if length is not None and not _LENGTHS[0] <= length <= _LENGTHS[1]:
         raise InputError(
             f"length = {length} m; a column has {_LENGTHS[0]} to {_LENGTHS[1]} m. Give metres, or "
@@ -700,6 +701,7 @@ def _check_units(length: float | None, axial_load: float | None) -> None:
 def _check_sizes(
     d: Array, f: Array, units: tuple[str, str], length: float | None, where: str, structure: str
 ) -> None:
+    """Refuse displacements [m] and forces [N] whose largest values no test has."""
     for values, unit, quantity in zip((d, f), units, _QUANTITIES, strict=True):
         largest = float(np.max(np.abs(values)))
         low, high, si = _PLAUSIBLE[quantity]
@@ -714,6 +716,7 @@ def _check_sizes(
 
 
 def _check_offset(d: Array, f: Array, zero: bool | None, where: str) -> None:
+    """Refuse a first row far from zero unless the user has said what it means (`zero`)."""
     if zero is not None:
         return
     for values, quantity, si in ((d, "displacement", "m"), (f, "force", "N")):

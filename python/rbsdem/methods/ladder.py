@@ -76,7 +76,7 @@ class Setting:
 
     @property
     def name(self) -> str:
-        """The method and where it changes lines."""
+        """The method, and whether it locates the events at which springs change lines."""
         return f"{self.method}, located" if self.events == "located" else self.method
 
     @property
@@ -451,7 +451,7 @@ def probe(case: StudyCase) -> Probe:
     interval, regular = common_interval(time)
     level = case.column.kinematics
     limit, explicit = interval, 0.0
-    if not isinstance(case.column, Frame):  # It refuses explicit methods at once.
+    if not isinstance(case.column, Frame):  # Frames refuse explicit methods.
         first = _beginning(case, min(1e-6 * interval, time[1] - time[0]))
         keywords = first.keywords(Setting("rk4", level), case.column)
         result = time_history(first.column, first.time, **keywords)
@@ -478,6 +478,7 @@ def _beginning(case: StudyCase, duration: float) -> StudyCase:
 
 
 def _seconds(case: StudyCase, setting: Setting) -> float:
+    """Return the wall time of one run [s]."""
     begin = clock.perf_counter()
     case.solve(setting)
     return clock.perf_counter() - begin
@@ -543,8 +544,7 @@ def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[li
     return families
 
 
-#: The settings of a method that a setting of a study has; the budget and the limit of stability
-#: are its own affair.
+#: Keywords of `Solver` that a setting may have; budget and limit of stability belong to the study.
 OF_SETTING = tuple(name for name in Solver.__annotations__ if name in Setting.__annotations__)
 
 

@@ -218,6 +218,7 @@ def compare(first: MethodRun, second: MethodRun, wanted: float, warning: str) ->
             f"the two agree to {digits(apart.response_max):.1f} digits only, "
             f"{wanted:g} were wanted: errors below {apart.largest:.0e} cannot be measured"
         )
+    # True if both are explicit, False if both are implicit.
     kind = None
     implicit = [run.setting.method in IMPLICIT for run in (first, second)]
     if first.setting.method != "static" and any(implicit) == all(implicit):
@@ -260,7 +261,10 @@ def _static_reference(trials: MethodRuns, wanted: float) -> Reference | str:
 
 
 def _inverse(case: StudyCase, answer: Answer, parts: int) -> MethodRun | None:
-    """Return the path driven by the response, its answer in what was driven first."""
+    """Return the path driven by the response; None if that cannot be driven.
+
+    Its response is that of `answer`, off by what the driven quantity lost on its way back.
+    """
     name, path = next(iter(case.loads.items()))
     other = "force" if name == "displacement" else "displacement"
     rows = answer.response.size
@@ -612,7 +616,7 @@ def seconds_text(seconds: float) -> str:
 
 
 def make_rows(runs: Sequence[MethodRun], reference: Reference | None) -> tuple[MethodRun, ...]:
-    """Return the table, with errors and front."""
+    """Return the runs with their errors, the move to the next finer run, and the Pareto front."""
     rows = []
     for run in runs:
         changes: dict[str, float] = {}
@@ -853,6 +857,7 @@ def compare_methods(
 
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
+    """Refuse numbers outside of their ranges."""
     who = "compare_methods: "
     if tolerance is not None:
         _arguments.number(tolerance, f"{who}tolerance", above=0, below=1)

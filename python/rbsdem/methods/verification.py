@@ -76,13 +76,13 @@ def seven_storeys() -> Frame:
 
 
 def pushed_seven_storeys() -> list[float]:
-    """Return the displacement of its top under 72.5 kip [in]."""
+    """Return the displacement of the top of `seven_storeys` under 72.5 kip [in]."""
     push = pushover(seven_storeys(), force=72.5 * KIP, points=1)
     return [push.displacement[-1] / INCH]
 
 
 def as_building() -> Array:
-    """Return the periods of that frame as a building of one line, with its masses on the floors."""
+    """Return the periods of `seven_storeys` as a building of one line, with masses on its floors."""
     frame = seven_storeys()
     bare = replace(frame, nodes=[node for node in frame.nodes if not node.mass], members=())
     return modes(Building([(bare, 0.0, 0.0)], floor_mass=0.49 * MASS, pattern="nodes"), 7).period
@@ -100,7 +100,7 @@ def peterson(turned: float = 0.0) -> Building:
 
 
 def eccentric_building(turned: float = 0.0) -> list[float]:
-    """Return its periods, and the roof under a flat spectrum of 0.4 g by the sum of squares."""
+    """Return the periods of `peterson`, and its roof under 0.4 g at all periods, by squares [ft]."""
     found = modes(peterson(turned), 4)
     c, s = np.cos(np.radians(turned)), np.sin(np.radians(turned))
     along = c * found.floor_x + s * found.floor_y
@@ -174,10 +174,10 @@ def strut(
 ) -> Array:
     """Return moments [N m], then displacements across [m], of a strut under axial loads [N].
 
-    With `tip`, a force across [N], it is a cantilever, of its foot and top, which a spring may
-    guide against rotation; with `across`, a load
-    per length [N/m], it has pins at both ends, and the numbers are those of its middle. It
-    is one member, or two.
+    With `tip`, a force across [N], it is a cantilever of one member whose top the spring `guide`
+    may hold against rotation; the moment is that of its foot, the displacement that of its top.
+    With `across`, a load per length [N/m], it has pins at both ends and is two members; the numbers
+    are those of its middle.
     """
     pins = "across" in more
     parts, at = 1 + pins, 1
@@ -215,9 +215,10 @@ def aisc(loads: str, *, shear: bool, **more: Any) -> Array:
 
 
 def beam_column(shares: ArrayLike, halves: int) -> tuple[str, Callable[[], Array]]:
-    """Return moment and displacement of a column under shares of Euler's load, in both ways.
+    """Return moments and displacements of a column under shares of Euler's load.
 
-    It is a cantilever, or two `halves` of that with a top that is guided.
+    First by the closed form as a text, then as a function that solves for them. The column is a
+    cantilever, or, with two `halves`, has a top that is guided.
 
     L = 196 in, E = 29 500 ksi, A = 51.7 in2, I = 2150 in4, 10 kip across.
     """
@@ -300,7 +301,7 @@ def rocking_wall() -> list[float]:
 
 
 def rocking_line() -> list[float]:
-    """Return the same wall in three storeys of a frame, with its P-Delta, at 2 % drift [kN]."""
+    """Return the force of `rocking_wall` in a frame of three storeys, with P-Delta, at 2 % [kN]."""
     above = FrameMember(1e13, 1.0, 1.0)
     top = FrameNode("N-1-3", load_y=-378e3, push_x=1.0)
     lowest = FrameMember(1e13, 1.0, 1.0, flexure={0.0: _rocking_foot()})
@@ -458,7 +459,7 @@ def pulse(step: float, end: float = 1.0, spring: Spring | None = None, **options
 
 
 def yielding_pulse() -> Array:
-    """Return the same of a spring that yields at 7.5 kip."""
+    """Return the displacements of `pulse` with a spring that yields at 7.5 kip [in]."""
     spring = Bilinear(k=PULSE[1] * KIP / INCH, d_y=0.75 * INCH, k_post=0.0)
     return pulse(0.1, 0.9, spring, method="newmark", dt=0.1)
 
@@ -643,7 +644,7 @@ def shed() -> list[float]:
 
 
 def elwood() -> str:
-    """Return their formula with a core of 430 mm and an area of ties of 2 x 78.54 mm2."""
+    """Return the drift by the formula with a core of 430 mm and an area of ties of 2 x 78.54 mm2."""
     tangent = np.tan(np.radians(65.0))
     ties = 2 * np.pi / 4 * 0.01**2 * 300e6 * 0.43 / 0.1
     return f"{0.04 * (1 + tangent**2) / (tangent + 375e3 / (ties * tangent)):.6f}"
@@ -884,6 +885,7 @@ def _shown(comparison: PrintedValue) -> str:
 
 
 def _verdict(comparison: PrintedValue) -> str:
+    """Return "printed digits", the remark that explains a difference, or "wrong"."""
     if comparison.inside:
         return "printed digits"
     return comparison.problem.remark if comparison.holds else "wrong"

@@ -633,7 +633,7 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
         return springs
     try:
         several = (springs,) if isinstance(springs, str | bytes) else tuple(springs)
-    except Exception:  # Of any class of the caller.
+    except Exception:  # Classes of the caller raise anything.
         several = (springs,)
     for spring in several:
         checked_spring(spring, f"column: {name}", name, " or a sequence of them")

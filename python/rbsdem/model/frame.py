@@ -151,6 +151,7 @@ class FrameMember:
         return dict(self._springs(group)).get(position)
 
     def _springs(self, group: str) -> tuple[tuple[float, Spring], ...]:
+        """Return the springs of "flexure" or "shear" with their positions from 0 to 1."""
         return getattr(self, group) or ()
 
     def _groups(self, name: str, drawn: Mapping[Any, dict[str, Any]]) -> list[Any]:
@@ -328,6 +329,10 @@ class Member:
         _arguments.convert(self, "Member")
 
     def _group(self, kind: str, axial_of: str | None = None) -> Group:
+        """Return the member as a group of a case file, with the names of its kind and of a column.
+
+        `axial_of` is the column of another plane that has the same axial force.
+        """
         values = {
             "name": _core.Text(self.name),
             "from": _core.Text(self.start),
@@ -478,7 +483,7 @@ class MemberGeometry:
 
     @property
     def hung(self) -> float:
-        """Moment of its load in the middle between hinges, times 4 [N m]."""
+        """Four times the moment of its load in the middle, as between hinges at the ends [N m]."""
         return 0.5 * self.across_load * self.clear**2
 
     def moment(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
@@ -582,7 +587,7 @@ def cells_of(
 ) -> dict[Any, Any]:
     """Return the cells of a grid by line or bay and storey, 0 for all, in their order.
 
-    A cell is of a kind; or of that of `halves`, or a tuple of two of these.
+    A cell is an instance of `kind` or of `halves`, or a tuple of two instances of `halves`.
     """
     article = "an" if kind.__name__ == "Infill" else "a"
     kinds = f"{article} {kind.__name__}"

@@ -554,6 +554,7 @@ class Spiral:
 
 
 def _area(diameter: float) -> float:
+    """Return the area of a bar [m2]."""
     # A power of a huge number raises; the section refuses an area without end.
     return 0.25 * math.pi * diameter * diameter
 

@@ -343,6 +343,7 @@ class Section(_Fields, ABC):
 
     @cached_property
     def _wall(self) -> float:
+        """Thickness of the walls at the faces y < 0 and y > 0 [m]; 0 of a solid section."""
         return float(self.wall or 0.0)
 
     @cached_property
@@ -559,6 +560,7 @@ class RectangularSection(Section):
 
     @property
     def _web(self) -> float:
+        """Thickness of the walls at the sides [m]; 0 of a solid section."""
         return float(self.side_wall or 0.0)
 
     def lapped(self, steel: Steel) -> float:
@@ -595,6 +597,7 @@ class RectangularSection(Section):
         layouts = {"layout": self.layout, "inner_layout": self.inner_layout}
         for name, own in layouts.items():
             if own is not None and own.face is not None:
+                # 2 face + 2 (bars of the other faces - 2) are all bars.
                 other[name] = replace(own, face=own.number // 2 + 2 - own.face)
         if self.layout is None and self.bars:
             single = 0.25 * math.pi * float(self.bar_diameter or 0.0) ** 2
@@ -832,6 +835,7 @@ class TeeSection(RectangularSection):
         return super()._sizes() | {name: getattr(self, name) for name in names}
 
     def _turned(self) -> dict[str, Any]:
+        """Return the flange at the other face, unless it is no wider than the web."""
         wider = self.flange_width > self.width
         return {"flange_below": not self.flange_below} if wider else {}
 
@@ -1060,7 +1064,7 @@ def _box(half_width: float, half_depth: float) -> Array:
     return signs * [half_width, half_depth]
 
 
-#: Of a solid section.
+#: The line around the void of a solid section: it has no points.
 _NO_LINE: Array = np.empty((0, 2))
 
 
@@ -1108,5 +1112,6 @@ def _segment(radius: float, depth: Any) -> tuple[Any, Any]:
 
 
 def _ring(radius: float) -> Array:
+    """Return the points of a circle about the origin, x and y [m]."""
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])

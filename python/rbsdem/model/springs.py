@@ -65,7 +65,7 @@ class Spring:
     #: Name of the rule in the Fortran part.
     rule: ClassVar[str] = ""
     #: Parameters at which the virgin spring cracks, yields and caps, and on which sides; a rule
-    #: without them neither cracks nor yields, or does so as its axial load has it.
+    #: without them neither cracks nor yields, or where it does depends on its axial load.
     turns: ClassVar[Mapping[LandmarkName, str]] = {}
     sides: ClassVar[tuple[Literal[1, -1], ...]] = (1, -1)
 
@@ -91,6 +91,7 @@ class Spring:
                 # A side without values of its own has those of the other.
                 negative = f"{key}_neg"
                 known = negative if side < 0 and getattr(self, negative, None) is not None else key
+                # A key is a parameter, or the quotient of two, as "f_y/k".
                 above, _, below = known.partition("/")
                 at = getattr(self, above) / (getattr(self, below) if below else 1.0)
                 if at > 0:
@@ -455,6 +456,7 @@ class PeakOriented(Spring):
     fade: float = 0.0
 
     def _carries(self, side: int) -> bool:
+        """Whether a side has any strength: a side without values has those of the other."""
         other = side < 0 and self.f_y_neg is not None
         return bool((self.f_y_neg if other else self.f_y) > 0)  # type: ignore[operator]
 
@@ -674,10 +676,11 @@ class Layered(Spring):
         return f"Layered({len(self.layers)} layers)"
 
     def __hash__(self) -> int:
-        # Of two springs alone: those of all layers take long.
+        # Of the first and the last spring alone: those of all layers take long.
         return hash((*(y for y, _ in self.layers), self.layers[0][1], self.layers[-1][1]))
 
     def _check(self) -> None:
+        """Raise `InputError` if a layer is not allowed in a joint."""
         # The column checks whether the layers can carry its axial load.
         _core.evaluate("check_spring", self._alone(), axial_load=0.0)
 
@@ -745,6 +748,7 @@ class Layered(Spring):
 
 
 def _response(spring: _core.Statement, path: Array, axial_load: float) -> Array:
+    """Return the force of a spring along a path of deformation, under an axial load [N]."""
     histories = {"axial_load": axial_load, "deformation": path}
     return _core.evaluate("spring_response", spring, **histories).values
 
@@ -865,6 +869,7 @@ class Strains:
         return self._extreme("cover", -1)
 
     def _extreme(self, part: Part, side: int) -> Array:
+        """Return the largest strain of a part, in tension (`side` = 1) or compression (-1)."""
         return np.asarray((side * self.of(part)).max(axis=1, initial=0.0))
 
     @property

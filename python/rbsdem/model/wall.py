@@ -99,6 +99,7 @@ class Curtain:
         return self.faces * 0.25 * math.pi * self.diameter**2
 
     def _group(self, direction: str, steel: int) -> _core.Statement:
+        """Return its keys as a group of a case file; `steel` is the number of its steel."""
         values = {"diameter": self.diameter, "spacing": self.spacing, "faces": self.faces}
         return _core.group("curtain", {"direction": direction, **values, "steel": steel})
 
@@ -141,6 +142,7 @@ class Boundary:
         _arguments.convert(self, "boundary")
         _check_sizes(self, "boundary", length="m", thickness="m", bar_diameter="m")
         if isinstance(self.bars, Bars):
+            # Bars given as one row stand in pairs, one bar near each face.
             row, two = self.bars, self.bars.number // 2
             each = [2] * two + [1] * (row.number % 2)
             rows = [replace(row, number=number) for number in each]
@@ -161,18 +163,20 @@ class Boundary:
         bars = tuple((round(x, 9), area, steel) for x, area, steel in bars)
         _arguments.put(self, bars=bars)
         if given(self.bar_diameter) is None:
+            # The mean diameter, weighted by the areas.
             areas = [area for _, area, _ in bars]
             mean = sum(area**1.5 for area in areas) / max(sum(areas), 1e-12)
             _arguments.put(self, bar_diameter=Derived(math.sqrt(4.0 / math.pi) * mean))
 
     @property
     def _in_rows(self) -> bool:
+        """Whether its bars are rows, which get their places in a wall."""
         rows: Any = self.bars
         return bool(rows) and all(isinstance(row, Bars) for row in rows)
 
     @property
     def single(self) -> tuple[Bar, ...]:
-        """Its bars one by one; those of a wall know where they are."""
+        """Its bars one by one; none while they are rows, which get their places in a wall."""
         bars: Any = self.bars
         return () if self._in_rows else tuple(bars)
 

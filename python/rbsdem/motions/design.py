@@ -211,6 +211,7 @@ _MOST_OF_G = {"ag": 2.0, "s_xs": 5.0, "s_x1": 3.0}
 
 
 def _part_of_g(value: float, name: str) -> float:
+    """Return a checked acceleration as a part of g."""
     hint = "; it is a part of g, as 0.3, and 2.45 m/s2 is 0.25"
     return _arguments.number(
         value, f"spectrum: {name}", above=0.0, most=_MOST_OF_G[name], hint=hint
@@ -218,6 +219,7 @@ def _part_of_g(value: float, name: str) -> float:
 
 
 def _ratio(damping: float) -> float:
+    """Return a checked ratio of damping."""
     hint = "; it is a ratio, not a percentage"
     return _arguments.number(damping, "spectrum: damping", above=0.0, most=0.5, hint=hint)
 
@@ -225,6 +227,7 @@ def _ratio(damping: float) -> float:
 def _en_1998(
     ground: float, corners: tuple[float, float, float, float], eta: float, t: Array
 ) -> Array:
+    """Return S_e of EN 1998-1, 3.2.2.2 at periods t [s]; `corners` are S, T_B, T_C, T_D [m/s2]."""
     soil, t_b, t_c, t_d = corners
     rise = 1.0 + t / t_b * (2.5 * eta - 1.0)
     held = np.maximum(t, t_c)
@@ -233,6 +236,7 @@ def _en_1998(
 
 
 def _asce_41(short: float, corner: float, last: float, factor: float, t: Array) -> Array:
+    """Return S_a of ASCE 41-17, 2.4.1.7 at periods t [s], divided by the factor of damping."""
     rise = (5.0 / factor - 2.0) * t / corner + 0.4
     held = np.maximum(t, corner)
     fall = corner / held / factor * np.minimum(last / held, 1.0)
@@ -240,6 +244,7 @@ def _asce_41(short: float, corner: float, last: float, factor: float, t: Array) 
 
 
 def _points(period: Array, acceleration: Array, t: Array) -> Array:
+    """Return a spectrum of points at periods t [s], linear between them."""
     outside = (t < period[0]) | (t > period[-1])
     if outside.any():
         raise InputError(

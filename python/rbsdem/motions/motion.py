@@ -68,6 +68,7 @@ class Spectrum(Tabular):
         return np.where(self.period > 0, self._times_frequency(2), self.acceleration)
 
     def _times_frequency(self, power: int) -> Array:
+        """Return the displacement times a power of the circular frequency; 0 at period 0."""
         moving = self.period > 0
         omega = 2 * np.pi / np.where(moving, self.period, 1.0)
         return np.where(moving, omega**power * self.displacement, 0.0)
@@ -294,9 +295,11 @@ class GroundMotion:
             file.write((head + "".join(f"{t!r},{a!r}\n" for t, a in rows)).encode())
 
     def _husid(self) -> Array:
+        """Return the Arias intensity up to each time [m/s]."""
         return np.pi / (2 * STANDARD_GRAVITY) * _integral(self.acceleration**2, self.dt)
 
     def _who(self) -> str:
+        """Return how messages call the motion."""
         return f"motion {self.name}" if self.name else "motion"
 
     def __repr__(self) -> str:
@@ -314,6 +317,7 @@ class GroundMotion:
         return hash(self._key())
 
     def _key(self) -> tuple[bytes, float, str, str]:
+        """Return what two equal motions have in common."""
         return self.acceleration.tobytes(), self.dt, self.name, self.description
 
 
@@ -550,6 +554,7 @@ def synthetic(n: int = 20, seed: int = 1, dt: float = 0.01) -> tuple[GroundMotio
 
 
 def _one(seed: int, number: int, dt: float) -> GroundMotion:
+    """Return synthetic motion `number`, whose properties and noise are drawn by its own seed."""
     # The sequence of this generator is fixed for all versions of numpy.
     draw = np.random.RandomState([seed, number])
     pga, ground, damping, strong = (

@@ -293,7 +293,7 @@ def stated_step(head: Sequence[str]) -> float | None:
 
 
 def _seconds(number: float, unit: str) -> float:
-    """Return a number of seconds, or the time between two of a rate."""
+    """Return a time in seconds, or the time between two values of a rate as 100 Hz."""
     if unit in _RATES:
         return 1 / (_RATES[unit] * number)
     micro = unit.startswith(("us", "micro"))
@@ -453,6 +453,7 @@ def _first_value(lines: list[str]) -> int:
 
 
 def _states_count(line: str) -> bool:
+    """Whether a line states the number of values."""
     return bool(_COUNT.search(line)) or "NPTS" in line.upper()
 
 
@@ -477,7 +478,10 @@ def _record(lines: list[str]) -> tuple[int, int | None, float | None] | None:
 def _counted(
     lines: list[str], filled: Sequence[int]
 ) -> tuple[int, int | None, float | None] | None:
-    """Return the same of lines without words for the number of the values."""
+    """Return what `_record` returns, for lines that do not name the number of the values.
+
+    `filled` are the places of the lines that are neither empty nor above the values.
+    """
     begin = filled[0]
     words, below = _words(lines[begin]), _words(lines[filled[1]])
     numbers = [len(_NUMBER.findall(lines[i])) for i in filled]
@@ -596,6 +600,7 @@ def read_knet(lines: list[str], path: str, name: str) -> GroundMotion:
 
 
 def _values(lines: list[str], first: int, path: str) -> list[float]:
+    """Return the values below the first lines; a number may be broken at the end of a line."""
     values: list[float] = []
     carried, begun = "", 0
     for number, line in enumerate(lines[first:], first + 1):
@@ -634,6 +639,7 @@ def _row(row: str, number: int, path: str) -> list[float]:
 
 
 def _float(word: str) -> float:
+    """Return a number whose exponent may have the letter d of Fortran."""
     return float(word.lower().replace("d", "e"))
 
 
@@ -893,7 +899,7 @@ def read_motion(
         dt = _arguments.number(dt, "dt")
     # The name of a file may have bytes that are no text.
     stem = Path(name).stem.encode("utf-8", "replace").decode()
-    with unwarned():  # Of the bound below, which refuses the file unless checks=False.
+    with unwarned():  # A peak beyond 5 g is refused below.
         if lines[0].startswith("Origin Time") and any(
             "Scale Factor" in line for line in lines[:20]
         ):
@@ -916,6 +922,7 @@ def read_motion(
 
 
 def _refuse_format(path: object, kind: str) -> None:
+    """Raise `InputError` for a format that other programs read."""
     raise InputError(
         f"{path}: {kind} is not read here; gmprocess (USGS) or obspy reads it, "
         "and GroundMotion(acceleration, dt) takes the values in m/s2"

@@ -220,6 +220,7 @@ def _draw_frame(
 def _building_of(
     shown: Building | BuildingResult, who: str
 ) -> tuple[Building, BuildingResult | None]:
+    """Return a building and its result, None if only the building is shown."""
     if isinstance(shown, BuildingResult):
         return shown.building, shown
     remedy = "or the result of one"

@@ -686,6 +686,7 @@ def _draw_supports(ax: Axes, structure: Frame, size: float) -> None:
 
 
 def _write_names(ax: Axes, structure: Frame, size: float) -> None:
+    """Write the names of members beside their middles; `size` is that of the frame [m]."""
     for member in structure.geometry.values():
         if member.name in structure.struts:
             continue
@@ -739,17 +740,19 @@ def _write_force(
 
 
 def _short(value: float) -> str:
+    """Return a number with two digits, or all before the point."""
     return f"{value:.0f}" if value >= 9.5 else f"{value:.2g}"
 
 
 def _heading(result: FrameResult, row: int, what: str) -> str:
+    """Return the title of a figure: what is drawn, and time and roof drift of the row."""
     drift = 100 * result.displacement[row] / result.frame.height
     when = f"{result.time[row]:.4g} s, " if result.dynamic else ""
     return f"{what}, {when}roof drift {drift:.2f} %"
 
 
 def _dress(ax: Axes, structure: Frame) -> None:
-    """Equal scales, ticks at the lines of columns and at the floors, no box."""
+    """Give axes equal scales, ticks at the lines of columns and at the floors, and no box."""
     parts = structure.parts
     for places, put in ((parts.x, ax.set_xticks), (parts.y, ax.set_yticks)):
         ticks = np.unique(np.round(places, 6))

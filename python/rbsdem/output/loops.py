@@ -321,6 +321,7 @@ def comparison(comparison: Comparison, *, ax: Axes | None = None, **line: Any) -
 
 
 def _over_test(scores: Comparison, title: str, ax: Axes | None, line: Line) -> Axes:
+    """Draw the loop of the model over that of the test under a title."""
     test = scores.displacement, scores.test_force
     height = scores.height if scores.height > 0 else None
     return loops_over_test(scores.model_curve, test, title=title, height=height, ax=ax, **line)
@@ -424,7 +425,7 @@ def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float
 
 
 def _dress(ax: Axes, height: float | None) -> None:
-    """Limits symmetric about zero, zero lines, labels, and drift ratios on top."""
+    """Give axes limits symmetric about zero, zero lines, labels, and drift ratios on top."""
     from matplotlib.ticker import MaxNLocator  # noqa: PLC0415
 
     # Lines across the axes, such as those through zero, have no extent of their own.
@@ -615,6 +616,7 @@ def profile(
 
 
 def _lengths(result: ColumnResult) -> Array:
+    """Return the lengths above the joints from the ground up: footing, bodies, support [m]."""
     column = result.column
     lengths, *_ = bodies(column)
     beneath = () if column.footing is None else (column.footing.height,)

@@ -159,6 +159,7 @@ def _shares(fitted: Fragility) -> tuple[Any, Any]:
 
 
 def _points(ax: Axes, runs: Runs, edp: str, line: Line) -> None:
+    """Draw the response of each run over its intensity; collapses at the right edge."""
     percent = 100.0 if edp.endswith("drift") else 1.0
     response = percent * runs.response(edp)
     stands = np.isfinite(response)
@@ -170,6 +171,7 @@ def _points(ax: Axes, runs: Runs, edp: str, line: Line) -> None:
 
 
 def _label_response(ax: Axes, edp: str, runs: Runs) -> None:
+    """Label the axes of response and intensity."""
     name = edp.replace("_", " ").capitalize()
     ax.set(xlabel=f"{name} (%)" if edp.endswith("drift") else name, ylabel=runs.measure.label)
 

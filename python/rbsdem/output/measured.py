@@ -183,6 +183,7 @@ def numbers_table(row: Prediction) -> Table:
 
 
 def _three(group: Any, name: str, digits: int) -> str:
+    """Return the median of a score with its quartiles in brackets."""
     values = [group[f"{name}_{end}"] for end in ("median", "lower", "upper")]
     if not math.isfinite(values[0]):
         return "-"

@@ -94,10 +94,12 @@ def methods(study: MethodStudy, *, ax: Axes | None = None, **line: Any) -> Axes:
 
 
 def _points(rows: Sequence[MethodRun], floor: float) -> tuple[list[float], list[float]]:
+    """Return wall times [s] and errors, which are not drawn below the floor."""
     return [row.seconds for row in rows], [max(row.error, floor) for row in rows]
 
 
 def _dress(ax: Axes, study: MethodStudy, floor: float) -> None:
+    """Give axes scales, labels, the agreement of the reference (`floor`), and the choice."""
     ax.set(xscale="log", yscale="log", xlabel="Wall time (s)", ylabel="Relative error")
     low, high = ax.get_ylim()
     low, high = min(low, floor / 3), min(high, TOP)
@@ -209,5 +211,6 @@ def _settings(study: MethodStudy) -> DataFrame:
 
 
 def _styles(study: MethodStudy) -> list[str | None]:
+    """Return the style of each row of the table: the chosen setting is bold."""
     chosen = None if study.choice is None else study.choice.row
     return ["bold" if chosen is not None and row == chosen else None for row in study.rows]

@@ -118,6 +118,7 @@ def moment_curvature(
 def _draw_events(
     events: Events, furthest: float, ax: Axes, names: Iterable[str] = tuple(EVENT_MARKS)
 ) -> None:
+    """Mark the events of a diagram up to its furthest curvature [1/m]."""
     for name in names:
         point = getattr(events, name)
         if point is not None and point.curvature <= furthest:
@@ -126,6 +127,7 @@ def _draw_events(
 
 
 def _dress(ax: Axes) -> None:
+    """Give axes of moment and curvature their limits, labels and legend."""
     ax.set_xlim(left=0.0)
     ax.set_ylim(bottom=0.0)
     ax.set(xlabel=labelled("Curvature", "1/m"), ylabel=labelled("Moment", "N m"))
@@ -473,6 +475,7 @@ def _draw_layers(
 
 
 def _of_concrete(compression: float, peak: float, spall: float) -> str:
+    """Return the state of concrete by its compressive strain, a name in `_FIBRES`."""
     if compression <= 0:
         return "open"
     if compression < peak:

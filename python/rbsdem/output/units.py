@@ -45,6 +45,7 @@ def units(length: str = "mm", force: str = "kN") -> Iterator[None]:
 
 @cache
 def _scales(length: str, force: str) -> dict[str, tuple[float, str]]:
+    """Return factor and unit on paper of units of SI, for units of length and force."""
     size, weight = LENGTHS[length], FORCES[force]
     inches = length == "in"
     arm, of_arm = (size, length) if inches else (1.0, "m")

@@ -320,10 +320,10 @@ class Result(_Channels):
         """Solve once more by the next finer setting and return the distance to it.
 
         The finer setting is half the step, or a hundredth of the tolerance, or half of the
-        increments of a static path, by the same method. Where the error falls with the setting, as it does unless
-        the response is chaotic, it is about as large as this distance. With a tolerance that cannot
-        be made much sharper it is the distance to one a hundred times as large, which is more than
-        the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
+        increments of a static path, by the same method. If the error falls with the setting, as it
+        does unless the response is chaotic, it is about as large as this distance. With a tolerance
+        that cannot be made much sharper, the distance is that to a tolerance a hundred times as
+        large, which is more than the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
         number of rows.
 
         Returns

@@ -364,7 +364,7 @@ def _outer_bars(
     outer: dict[tuple[float, ...], list[float]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
     layers_of_bars = [(y, layer, over) for (y, layer), part, over in rows if part == "bar"]
-    # Layers of bars are in the order of `section.bars`: at one height there may be bars of several steels.
+    # Layers of bars are in the order of `section.bars`: at one height may be bars of several steels.
     for (y, layer, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         in_web, bows = 0.0, buckles
         if isinstance(section, WallSection):

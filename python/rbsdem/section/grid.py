@@ -342,7 +342,7 @@ class Grid:
         return np.asarray(beams * np.array(self.bays))
 
     def weights(self, walls: dict[tuple[int, int], float], heavy: bool) -> dict[str, float]:
-        """Return the weights on the nodes of floors [N]: walls, and half of each column if heavy."""
+        """Return the weights on the nodes of floors [N]: walls, and halves of heavy columns."""
         weights = {}
         for i, k in self.columns:
             if not any(cell is not None for cells in self.around(i, k) for cell in cells):

@@ -215,8 +215,8 @@ class LayeredModel:
         """Return the spring of a joint above the hinge.
 
         The joint stands for the part from `low` to `high` below the point without moment, counted
-        in parts; by default for one part. The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and
-        stays below yield. From a to b below the top its curvature gains in proportion to what the
+        in parts; by default for one part. The column cracks at the moment of a tensile stress of
+        0.6 sqrt(f'c) (MPa), and stays below yield. From a to b below the top its curvature gains in proportion to what the
         moment is above that; where all of the part has cracked, the joint in its middle turns as
         much if it cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one
         further from the centroid counts for both.
@@ -430,6 +430,7 @@ class LayeredColumn(Column):
 
     @property
     def _prismatic(self) -> bool:
+        """Whether its section, not being symmetric, stays the same way up over both halves."""
         return not self._drawing.section.symmetric
 
     def _kept(self, field: str) -> bool:

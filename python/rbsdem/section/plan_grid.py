@@ -397,8 +397,8 @@ class Weights:
     def put_panels(self, storey: int, load: float) -> None:
         """Put the load of a floor on its beams, by yield lines that bisect the corners of panels.
 
-        The trapezoid or triangle of a beam becomes a uniform load of equal sum. A side without a beam leaves
-        its part to the others.
+        The trapezoid or triangle of a beam becomes a uniform load of equal sum. A side without a
+        beam leaves its part to the others.
         """
         d = self.drawing
         for i, j, (area, x, y, second) in self.panels(storey) if load else ():
