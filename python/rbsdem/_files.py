@@ -141,6 +141,7 @@ def claim_folder(
 
 
 def _write_list(path: Path, names: Iterable[str]) -> None:
+    """Write the list of the files of a folder."""
     with atomic_write(path) as file:
         file.write("\n".join((f"{_MARK}, which replaces:", *names, "")).encode())
 
@@ -300,6 +301,7 @@ def escape_formula(text: str) -> str:
 
 
 def _cell(value: object) -> str:
+    """Return a value as a cell of csv: six digits; nothing for None, NaN and infinity."""
     if isinstance(value, str):
         return escape_formula(value)
     if value is None or (isinstance(value, float) and not math.isfinite(value)):

@@ -426,6 +426,7 @@ def _values(
 
 
 def _number(word: str, where: str) -> float:
+    """Return the number of a field, or raise `InputError` with the place of the field."""
     try:
         value = float("x" if "_" in word else word.lower().replace("d", "e"))
     except ValueError:
@@ -438,6 +439,7 @@ def _number(word: str, where: str) -> float:
 
 
 def _split(line: str, mark: str) -> list[str]:
+    """Return the fields of a line; a blank as `mark` stands for any number of blanks."""
     line = line.strip(" \t") if mark == " " else line.strip(" ").rstrip("\t ")
     if not line:
         return []

@@ -57,6 +57,7 @@ class InputError(RbsdemError, ValueError):
 
 
 def _field(line: str) -> str:
+    """Return the value that a message is about, as "layout.number"; "" if it names none."""
     match = _FIELD.match(line)
     return "" if match is None else ".".join(filter(None, match.groups()))
 

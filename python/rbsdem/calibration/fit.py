@@ -338,6 +338,7 @@ class Misfit:
         return vectors
 
     def _solve(self, fractions: Array) -> tuple[Array, str]:
+        """Return the error vector of a point, and "completed", "failed" or "refused"."""
         try:
             force, failed = reached_force(self.column(fractions), self.target.displacement)
         except InputError:
@@ -399,6 +400,7 @@ class Misfit:
         vectors: dict[bytes, Array] = {}
 
         def error(at: Array) -> Array:
+            """Return the error vector of a point, and keep it for its Jacobian."""
             vectors[at.tobytes()] = vector = self._limited([at])[0]
             return vector
 

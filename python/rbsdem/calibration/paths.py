@@ -215,6 +215,7 @@ _Leaf = tuple[list[str], str, str, float]
 
 
 def _of_frame(frame: Frame) -> Iterator[_Leaf]:
+    """Yield the numbers of the kinds of members that may be fitted."""
     for kind_name, kind in frame.named_kinds.items():
         for names, rule, key_name, value in _leaves(kind, [kind_name]):
             # The strips and bars of a drawn member change together.
@@ -226,6 +227,7 @@ def _of_frame(frame: Frame) -> Iterator[_Leaf]:
 
 
 def _of_column(column: Column) -> Iterator[_Leaf]:
+    """Yield height, axial load and the numbers of the springs of a column."""
     yield from (([name], "", name, getattr(column, name)) for name in _PLAIN)
     for kind in _UNITS:
         springs, joints = getattr(column, kind), column.joint_numbers[-1]
@@ -257,6 +259,7 @@ def _spring(item: Any) -> Any:
 
 
 def _of_item(names: list[str], place: int) -> list[str]:
+    """Return the names of an item of a sequence: by its place, and by * for all of them."""
     return [f"{name}[{index}]" for index in (place, "*") for name in names]
 
 

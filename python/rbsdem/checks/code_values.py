@@ -364,6 +364,7 @@ def backbones(values: CodeValues) -> list[Backbone]:
     moment = values["yield.moment"]
 
     def line(name: str, source: str, *points: tuple[float, float]) -> Backbone:
+        """Return a backbone from zero through points of drift and share of the yield moment."""
         drift, share = np.array([(0.0, 0.0), *points]).T
         return Backbone(name, source, drift, moment * share)
 
@@ -497,6 +498,7 @@ def _near(first: float, other: float) -> bool:
 
 
 def _loop(curve: Curve) -> tuple[Array, Array]:
+    """Return displacements [m] and forces [N] of a test, all finite."""
     d, f = loop_pair(curve, "the test")
     return _arguments.finite_vector(d, "displacement"), _arguments.finite_vector(f, "force")
 

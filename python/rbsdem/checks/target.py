@@ -650,6 +650,7 @@ def _meeting(
         return elastic, min(elastic, curve.elastic)
 
     def asked(end: float) -> tuple[float, float]:
+        """Return the demand by lines up to an end, and that end; without such lines elastic."""
         try:
             return demand(end), end
         except InputError:

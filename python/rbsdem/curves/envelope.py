@@ -48,14 +48,17 @@ def beyond(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array,
 
 
 def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Return numbers, places and forces where a path is farther than ever, and gets there again."""
+    """Return the parts of `beyond` for a path to the positive side: rows, places x, forces y.
+
+    Row 3.5 is half way between rows 3 and 4.
+    """
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))[:-1]
     rows = np.flatnonzero(x > so_far)
     after = rows[rows > 0]
     share = (so_far[after] - x[after - 1]) / (x[after] - x[after - 1])
     force_there = y[after - 1] + share * (y[after] - y[after - 1])
     number = np.concatenate((rows.astype(np.float64), after - 1 + share))
-    # Where the row before is one of them, the crossing is that row.
+    # If the row before is itself beyond, the crossing is that row and stands once.
     number, at = np.unique(number, return_index=True)
     return (
         number,
@@ -65,7 +68,11 @@ def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
 
 
 def _envelope(x: Array, y: Array, turns: np.ndarray) -> tuple[Array, Array, Array]:
-    """Return the rows of `_beyond`, and of each leg that all but gets there the largest force."""
+    """Return what `_beyond` returns, and the largest force of each leg that nearly gets there.
+
+    A leg goes from one turning point to the next (`turns`); it nearly gets there if it reaches 0.95
+    of the largest displacement so far.
+    """
     numbers, xs, ys = ([part] for part in _beyond(x, y))
     so_far = np.maximum.accumulate(np.concatenate(([0.0], x)))
     if x.size >= 2:
@@ -85,7 +92,7 @@ def _envelope(x: Array, y: Array, turns: np.ndarray) -> tuple[Array, Array, Arra
 def _largest_beyond(
     x: Array, y: Array, rows: tuple[int, int], least: float
 ) -> tuple[float, float, float]:
-    """Return the point of the largest force between two rows where x is at least so large."""
+    """Return row, x and y of the largest force between two rows where x is at least `least`."""
     first, last = rows
     x, y = x[first : last + 1], y[first : last + 1]
     inside = x >= least
@@ -192,6 +199,7 @@ def _still_reached(force: Array, half_cycle: np.ndarray) -> Array:
 
 
 def _to_side(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array]:
+    """Return a curve whose side that is asked for is the positive one."""
     if _arguments.integer(side, "side") not in (1, -1):
         raise InputError(f"side = {side!r} must be 1 or -1")
     d, f = columns(("displacement", "force"), displacement, force, least=0)
@@ -516,6 +524,7 @@ def _apart(x: Array, y: Array, at: float, force: float, end: float, last: float)
 
 
 def _ec_8(x: Array, y: Array) -> tuple[float, float, float, float]:
+    """Return an elastic and a level line with the area of the envelope, at its last force."""
     end, force = float(x[-1]), float(y[-1])
     if not force > 0:
         raise InputError(f"the envelope has no force at end = {end:g} m; choose another end")
@@ -529,6 +538,7 @@ def _ec_8(x: Array, y: Array) -> tuple[float, float, float, float]:
 
 
 def _equal_energy(x: Array, y: Array, top: float) -> tuple[float, float, float, float]:
+    """Return an elastic line through 0.4 of the peak force and a level one of the same area."""
     end = float(x[-1])
     first = _crossing(x, y, 0.4 * top)
     if not first > 0:

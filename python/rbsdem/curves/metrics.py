@@ -331,6 +331,7 @@ def ratio(model: float, test: float) -> float:
 
 
 def _secant(d: Array, f: Array, level: float) -> float:
+    """Return the secant to the first point at a share of the peak force [N/m]; NaN without one."""
     size = np.abs(f)
     target = level * float(np.max(size))
     if not target > 0:
@@ -542,6 +543,7 @@ def _work_to_zero(d: Array, f: Array, works: Array, first: int, last: int, side:
 
 
 def _columns(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
+    """Return checked displacements and forces, which may be empty."""
     d, f = columns(("displacement", "force"), displacement, force, least=0)
     return d, f
 

@@ -35,7 +35,8 @@ SCORES = ("nrmse", *_RATIOS, "rms_best", "path_fraction", "nrmse_reached")
 #: Columns of half-cycles in the table of a comparison, with the unit in the name.
 _CYCLE_COLUMNS = {"peak_force": "_N", "energy": "_J", "stiffness": "_N/m", "damping": ""}
 
-# The displacement of a row is that of the test; with exact rotations it is solved for.
+# Displacements of model and test that differ by less than this share of the largest are the same:
+# with exact rotations the displacement is solved for.
 _SAME = 1e-6
 
 # Forces so many times apart are in two units; a poor model is not.
@@ -153,7 +154,7 @@ class Comparison(_Ratios, Tabular):
 
     @cached_property
     def model_drift_at_loss(self) -> float:
-        """The same of the model, over the rows that it reached."""
+        """Drift at which the model has lost 20 % of its strength, over the rows it reached."""
         return strength_loss(*self.model_curve) / self.height
 
     @property
@@ -319,6 +320,7 @@ def displacement_metrics(
 
 
 def _largest(values: Array, name: str) -> float:
+    """Return the largest absolute value, by which errors are divided; refuse 0."""
     largest = float(np.max(np.abs(values)))
     if not largest > 0:
         raise InputError(f"{name} is 0 in every row; there is nothing to compare with")
@@ -355,6 +357,7 @@ def _model_rows(result: Any, d: Array) -> tuple[Array, int]:
 
 
 def _height(height: float | None, test: Any, result: Any) -> float:
+    """Return the height given, that of the test, or that of the model; NaN without any [m]."""
     if height is not None:
         return _arguments.number(height, "height", above=0, unit="m")
     if getattr(test, "height", None):

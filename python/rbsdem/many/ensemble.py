@@ -87,6 +87,7 @@ class EndRequest:
                 os.kill(os.getpid(), signal.SIGTERM)
 
     def _note(self, number: int, frame: object) -> None:
+        """Note a signal; a second Ctrl-C is an exception."""
         del frame
         if self.signal is not None and number == signal.SIGINT:
             raise KeyboardInterrupt
@@ -128,6 +129,7 @@ def work_through(
     waiting: dict[Future[Any], Task] = {}
 
     def take_ended() -> None:
+        """Take the tasks that have ended, after waiting for one for a beat at most."""
         for future in wait(waiting, BEAT, FIRST_COMPLETED).done:
             take(waiting.pop(future), future)
         beat()
@@ -520,6 +522,7 @@ def _carried_out(
         stack.enter_context(workers.executor)
 
         def take(piece: Piece, future: Future[Outcome]) -> None:
+            """Put the outcome of a task in its place, and into the store."""
             result = workers.result(piece, future)
             pace.learn(float(each[slice(*piece)].sum()), result)
             runs = missing[slice(*piece)]
@@ -528,6 +531,7 @@ def _carried_out(
                 kept.add(runs, result)
 
         def beat() -> None:
+            """Renew the display, and write what is due to the store."""
             show(workers.done(), "")
             if kept is not None:
                 kept.write_if_due()

@@ -331,6 +331,7 @@ class IDA(WithFragility):
         return Capacities(lower, upper)
 
     def _pairs(self) -> list[tuple[int, int]]:
+        """Return column and motion of each curve, from 0."""
         return list(np.ndindex(self.lower.shape))
 
     def _curve(self, column: int, motion: int, response: Array) -> tuple[Array, Array]:

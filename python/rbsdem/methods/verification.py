@@ -82,7 +82,7 @@ def pushed_seven_storeys() -> list[float]:
 
 
 def as_building() -> Array:
-    """Return the periods of `seven_storeys` as a building of one line, with masses on its floors."""
+    """Return the periods of `seven_storeys` as a building of one line, masses on its floors."""
     frame = seven_storeys()
     bare = replace(frame, nodes=[node for node in frame.nodes if not node.mass], members=())
     return modes(Building([(bare, 0.0, 0.0)], floor_mass=0.49 * MASS, pattern="nodes"), 7).period
@@ -100,7 +100,7 @@ def peterson(turned: float = 0.0) -> Building:
 
 
 def eccentric_building(turned: float = 0.0) -> list[float]:
-    """Return the periods of `peterson`, and its roof under 0.4 g at all periods, by squares [ft]."""
+    """Return the periods of `peterson`, and its roof under a flat 0.4 g, summed by squares [ft]."""
     found = modes(peterson(turned), 4)
     c, s = np.cos(np.radians(turned)), np.sin(np.radians(turned))
     along = c * found.floor_x + s * found.floor_y
@@ -188,6 +188,7 @@ def strut(
     ]
 
     def under(load: float) -> tuple[float, float]:
+        """Return moment [N m] and displacement across [m] under one axial load [N]."""
         nodes = [
             FrameNode(
                 f"{i}", length * i / parts, 0.0, ends.get(i, "free"),
@@ -644,7 +645,7 @@ def shed() -> list[float]:
 
 
 def elwood() -> str:
-    """Return the drift by the formula with a core of 430 mm and an area of ties of 2 x 78.54 mm2."""
+    """Return the drift by the formula, with a core of 430 mm and ties of 2 x 78.54 mm2."""
     tangent = np.tan(np.radians(65.0))
     ties = 2 * np.pi / 4 * 0.01**2 * 300e6 * 0.43 / 0.1
     return f"{0.04 * (1 + tangent**2) / (tangent + 375e3 / (ties * tangent)):.6f}"

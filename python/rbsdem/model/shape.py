@@ -640,6 +640,10 @@ class RectangularSection(Section):
         return self.width
 
     def _lay_out(self, inset: float) -> list[Bar]:
+        """Return the bars of the rows, or of the layouts if there are no rows.
+
+        Those of "side" stand in pairs at equal distances between the innermost rows.
+        """
         if not self.rows:
             return super()._lay_out(inset)
         half, side = 0.5 * self.depth, self.side
@@ -806,6 +810,7 @@ class TeeSection(RectangularSection):
         return super().__str__().replace(" mm", f" mm with a flange of {flange} mm", 1)
 
     def _finish(self) -> None:
+        """Check the flange, then do as every section."""
         if self.hollow:
             raise InputError("section: wall is not for a tee; remove it")
         if not self.flange_width >= self.width:
@@ -865,6 +870,7 @@ class TeeSection(RectangularSection):
         """
 
         def in_slab(bar: tuple[float, float]) -> bool:
+            """Return whether a bar is one of a row in the flange that is too wide for the web."""
             y = -bar[0] if self.flange_below else bar[0]
             beside = sum(d for other, d in bars if abs(other - bar[0]) < 1e-6)
             return y > 0.5 * self.depth - self.flange_thickness and beside > 0.5 * self.width

@@ -268,6 +268,7 @@ class BuildingResult(Result):
         return first_beyond
 
     def _owners(self, channel: str) -> Sequence[object]:
+        """Return floors, planes, nodes, members or springs that a channel has columns for."""
         if channel in _OF_FLOORS:
             return range(1, len(self.building.storey_heights) + 1)
         if channel == "plane_shear":

@@ -365,6 +365,7 @@ class FrameResult(Result):
         return shear, weight
 
     def _storeys(self) -> tuple[float, ...]:
+        """Return the heights of the storeys [m], or raise `InputError` if there are none."""
         if not self.frame.storey_heights:
             raise InputError(
                 "the frame has no storeys; give it a grid, or its nodes their floors "

@@ -489,12 +489,14 @@ def _losses(groups: Groups) -> dict[str, float]:
 
 
 def _infill(group: dict[str, Any]) -> Infill:
+    """Return the infill of a group; an opening is stated by its length and height."""
     values = _core.typed("infill", group)
     opening = values.pop("opening_length", 0.0), values.pop("opening_height", 0.0)
     return Infill(**values, opening=opening if any(opening) else None)
 
 
 def _member(group: Mapping[str, Any], kind: FrameMember) -> Member:
+    """Return the member of a group."""
     rigid_end = group.get("rigid_from", 0.0), group.get("rigid_to", 0.0)
     return Member(
         group["name"], group["from"], group["to"], kind, rigid_end, group.get("load", 0.0)

@@ -382,17 +382,18 @@ def pushover(
     initial : FrameResult, Result or path-like, optional
         The state that the path begins in.
     method : {"static", "newton"}, optional
-        From event to event, or in leaps from point to point, see `cyclic`. The default is "newton"
-        for a building in plan whose joints are drawn in layers, and "static" for all else.
+        "static" goes from event to event, "newton" in leaps from point to point, see `cyclic`. The
+        default is "newton" for a building in plan whose joints are drawn in layers, and "static"
+        for all other structures.
 
     Returns
     -------
     FrameResult or Result
-        With a row for each point and each event, or each leap by "newton"; `events` are the limit
-        states in their order, those between two rows by interpolation. A path that ends before is a
-        result too: its `summary` has "ended" as status, and why as reason. `cyclic`, whose path is
-        prescribed, raises `SolveError` there. Where second-order moments have used up the strength,
-        the path has ended: beyond, the structure falls.
+        A row for each point and each event, or with "newton" each leap; `events` are the limit
+        states in their order, those between two rows by interpolation. A path that ends early is a
+        result too: its `summary` has "ended" as status, and the cause as reason (`cyclic`, whose
+        path is prescribed, raises `SolveError` there). The path ends where second-order moments
+        have used up the strength: beyond, the structure falls under its own weight.
     """
     ends = {"drift": drift, "displacement": displacement, "force": force}
     said = [name for name, value in ends.items() if value is not None]

@@ -323,8 +323,8 @@ class Result(_Channels):
         increments of a static path, by the same method. If the error falls with the setting, as it
         does unless the response is chaotic, it is about as large as this distance. With a tolerance
         that cannot be made much sharper, the distance is that to a tolerance a hundred times as
-        large, which is more than the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
-        number of rows.
+        large, which is more than the error. Nothing is below the last digits of the numbers,
+        2.2e-16 times the root of the number of rows.
 
         Returns
         -------
@@ -399,6 +399,7 @@ class Result(_Channels):
         share = (at - times[row]) / length if length > 0 else 0.0
 
         def between(values: Any) -> Any:
+            """Return values at `share` of the way from `row` to the row after."""
             if isinstance(values, dict):
                 return {name: between(value) for name, value in values.items()}
             mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]

@@ -93,6 +93,7 @@ def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> 
     variance = np.diag(sizes**2)
 
     def alike(some: Sequence[tuple[float, ...]]) -> Array:
+        """Return the correlations of columns, by their features, with the given tests."""
         return np.array(
             [[0.5 + 0.5 * math.exp(-distance(a, test.features)) for test in given] for a in some]
         )
@@ -181,4 +182,5 @@ def _lengths(displacement: Array) -> Array:
 
 
 def _features(column: LayeredColumn) -> tuple[float, ...]:
+    """Return the properties by which a column is compared, see `features_of`."""
     return features_of(column._drawing.section, column.height, column._drawing.axial_load)

@@ -312,6 +312,7 @@ def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion
     )
 
     def strain(name: str, y: float, at: float, source: str, sign: float = 1.0) -> Criterion:
+        """Return a criterion on the strain at y; with `sign` = -1 compression is positive."""
         turn, open_ = sign * y / length, sign / length
         return Criterion(name, joint, float(at), source, rotation=turn, opening=open_)
 
@@ -364,7 +365,7 @@ def _outer_bars(
     outer: dict[tuple[float, ...], list[float]] = {}
     rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
     layers_of_bars = [(y, layer, over) for (y, layer), part, over in rows if part == "bar"]
-    # Layers of bars are in the order of `section.bars`: at one height may be bars of several steels.
+    # Layers of bars are in the order of `section.bars`: one height may have several steels.
     for (y, layer, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         in_web, bows = 0.0, buckles
         if isinstance(section, WallSection):

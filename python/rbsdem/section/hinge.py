@@ -235,6 +235,7 @@ def hinge_joint(
     ratio = axial_load / (cylinder * section.gross_area)
 
     def by_axial(value: float, exponent: float) -> float:
+        """Return a parameter, which is stated for an axial load ratio of 0.2, at this ratio."""
         return value * math.exp(exponent * (ratio - 0.2))
 
     bond = section.yield_stress / 1e6 * cast(float, section.bar_diameter)
@@ -244,7 +245,7 @@ def hinge_joint(
     concrete_length = min(model.compression_length * steel_length, _LONGEST_CONCRETE * length)
 
     def concrete(area: float, law: tuple[float, float, float]) -> ConcreteSpring:
-        # The spring of a strip with a strength, the strain at it and the slope behind it.
+        """Return the spring of a strip by strength [Pa], strain there, and slope beyond [Pa]."""
         stress, strain, softening = law
         secant = 1.3 * stress / strain
         return unchecked(
@@ -286,6 +287,7 @@ def hinge_joint(
     buckles = model.buckling > 0 and model.fatigue > 0
 
     def bar(area: float, steel: Steel, pressure: float) -> SteelSpring:
+        """Return the spring of a bar; `pressure` is rho_s f_yh of the hoops that hold it [Pa]."""
         fy, fu, hardens = _strength_of(section, steel, model)
         stiffness = steel.es * area / (steel_length + slip)
         return unchecked(

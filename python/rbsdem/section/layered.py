@@ -216,9 +216,10 @@ class LayeredModel:
 
         The joint stands for the part from `low` to `high` below the point without moment, counted
         in parts; by default for one part. The column cracks at the moment of a tensile stress of
-        0.6 sqrt(f'c) (MPa), and stays below yield. From a to b below the top its curvature gains in proportion to what the
-        moment is above that; where all of the part has cracked, the joint in its middle turns as
-        much if it cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one
+        0.6 sqrt(f'c) (MPa), and stays below yield. Its curvature grows with what the moment is
+        above the cracking moment. Over a part from a to b that has cracked all along, the joint in
+        the middle turns as much as the part does if the joint cracks at
+        3/4 (a + b)^2/(a^2 + a b + b^2) of the cracking moment. If the two faces are unlike, the one
         further from the centroid counts for both.
         """
         cracked = self.parameters.cracked_above

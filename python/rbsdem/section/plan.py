@@ -415,6 +415,7 @@ class Building(Frame):
         names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
 
         def changed(plane: Plane) -> Frame:
+            """Return the frame of a plane with its share of the other kinds."""
             of_frame = {
                 name: kinds[names[stated(kind)]]
                 for name, kind in plane.frame.named_kinds.items()

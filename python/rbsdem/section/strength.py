@@ -636,6 +636,7 @@ def shear_strength_mcft(
     crushed = 0.25 * sizes.fc * width * z
 
     def strength(v: float) -> float:
+        """Return the shear strength under the strain at mid-depth that a shear force v makes [N]."""
         eps_x = max((v * arm / d + v - pressed) / steel, 0.0)
         beta = 0.4 / (1.0 + 1500.0 * eps_x) * 1300.0 / size
         theta = math.radians(min((29.0 + 7000.0 * eps_x) * turn, 75.0))

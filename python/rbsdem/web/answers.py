@@ -415,6 +415,7 @@ def to_json(result: ColumnResult) -> dict[str, Any]:
 
 
 def _peak(values: Array) -> float | None:
+    """Return the largest absolute value for JSON, 0 without values."""
     return number(float(np.max(np.abs(values), initial=0.0)))
 
 
@@ -436,6 +437,7 @@ def _band(answered: Answered) -> dict[str, Any]:
 
 
 def _interval(interval: Any) -> list[float | None]:
+    """Return the lower end, the value and the upper end of an interval for JSON."""
     return [number(getattr(interval, end)) for end in ("lower", "value", "upper")]
 
 
@@ -476,6 +478,7 @@ def _figure(section: Section) -> dict[str, Any]:
 
 
 def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
+    """Return a moment-curvature diagram with its events for JSON."""
     options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
     diagram = diagram_of(section, load, confined=confined, **options)
     corners = asdict(diagram.events).items()
@@ -485,6 +488,7 @@ def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
 
 
 def _interaction(section: Section, code: str | None) -> dict[str, Any]:
+    """Return an interaction diagram for JSON: of a code, or by material laws."""
     points = _POINTS if code is None else 60
     diagram = interaction(section, code, points=points)  # type: ignore[arg-type]
     curves = _curve(diagram) | {"code": code}
@@ -495,20 +499,24 @@ def _interaction(section: Section, code: str | None) -> dict[str, Any]:
 
 
 def _joint(column: LayeredColumn) -> dict[str, Any]:
+    """Return the interaction diagram of the joint at the foot for JSON."""
     return _curve(column.interaction(points=_POINTS))
 
 
 def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
+    """Return axial loads and moments of a diagram for JSON."""
     return {"axial_load": numbers(diagram.axial_load), "moment": numbers(diagram.moment)}
 
 
 def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
+    """Return the values of codes for JSON."""
     return [
         asdict(value) | {"value": number(value.value)} for value in code_values(section, span, load)
     ]
 
 
 def _points(line: Array) -> list[list[float | None]]:
+    """Return the points of a line for JSON."""
     return [numbers(point) for point in np.asarray(line)]
 
 
@@ -535,6 +543,7 @@ def tests_of(folder: Path) -> Specimens:
 
 @lru_cache(maxsize=256)
 def _predicted(test: Specimen) -> Prediction:
+    """Return the prediction of a test, which is kept for the next column."""
     with unwarned(Warning):
         return predict([test])[0]
 

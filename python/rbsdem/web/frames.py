@@ -133,6 +133,7 @@ def _of_frame(result: FrameResult, whole: FrameResult | BuildingResult) -> dict[
 
 
 def _shear_at(result: BuildingResult | FrameResult, time: float) -> float:
+    """Return the base shear at a time [N]."""
     return float(np.interp(time, result.time, result.base_shear))
 
 

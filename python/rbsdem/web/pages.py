@@ -86,6 +86,7 @@ def one_file(
 
 
 def _digest(text: str) -> str:
+    """Return the digest by which the policy of a page allows a script or a style."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 

@@ -134,6 +134,7 @@ class ExploreServer(ThreadingHTTPServer):
         check = None if lane in ONCE else self.announce(tab, lane, number)
 
         def pause() -> None:
+            """Let another answer be computed, and end this one if a newer request has come."""
             # Another answer is computed first: a loop is waited for, a band is not.
             self.computing.release()
             try:
@@ -217,6 +218,7 @@ class _Handler(BaseHTTPRequestHandler):
         return path
 
     def _get(self, path: str) -> None:
+        """Send what the page begins with, the page, or one of its parts."""
         if path == "start":
             near = self.server.answers.near is not None
             begin = {"state": self.server.start, "tests": near}
@@ -229,6 +231,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(200, self.server.parts[name], TYPES[name.rsplit(".", 1)[1]])
 
     def _post(self, path: str) -> None:
+        """Answer a question: the path is its lane, the body a JSON object."""
         if path not in LANES:
             raise RefusedError(404, "nothing is here")
         if self.headers.get_content_type() != "application/json":
@@ -256,12 +259,14 @@ class _Handler(BaseHTTPRequestHandler):
         return asked
 
     def _refuse(self, status: int, text: str) -> None:
+        """Send an error as JSON, and close the connection."""
         # The rest of the request is not read.
         self.close_connection = True
         with suppress(ConnectionError, TimeoutError):
             self._send(status, json.dumps({"error": text}).encode(), "application/json")
 
     def _send(self, status: int, body: bytes, kind: str) -> None:
+        """Send an answer of a media type, with the heads of every answer."""
         self.send_response(status)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(body)))
@@ -283,4 +288,5 @@ def _whole(digits: str) -> int | float:
 
 
 def _no_constant(name: str) -> None:
+    """Refuse NaN and Infinity, which Python reads and JSON does not have."""
     raise ValueError(f"{name} is no number of JSON")

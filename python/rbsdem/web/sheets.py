@@ -142,6 +142,7 @@ def _image(draw: Callable[[], Any]) -> str:
 
 
 def _table(frame: DataFrame) -> str:
+    """Return a table as html."""
     columns = cells(frame)
     kinds = ["" if numbers else ' class="text"' for _, numbers, _ in columns]
 
@@ -203,6 +204,7 @@ def sheets_of(record: Any) -> Iterator[Sheet]:
 
 @sheets_of.register
 def _of_result(result: ColumnResult) -> Iterator[Sheet]:
+    """Yield the sheets of a response of a column."""
     yield _of_structure(result.column)
     yield Sheet("Summary", str(result.error_estimate), table=_summary(result.summary))
     if result.dynamic:
@@ -217,6 +219,7 @@ def _of_result(result: ColumnResult) -> Iterator[Sheet]:
 
 @sheets_of.register
 def _of_building(result: BuildingResult) -> Iterator[Sheet]:
+    """Yield the sheets of a response of a building, then those of its frames."""
     yield _of_plan(result.building)
     largest = int(np.abs(result.displacement).argmax())
     shapes = (
@@ -226,7 +229,7 @@ def _of_building(result: BuildingResult) -> Iterator[Sheet]:
     whole = "At the largest displacement of the roof."
     yield Sheet("Building", f"{result.scope_note} {whole}", shapes, _summary(result.summary))
     for name, frame in result.frames.items():
-        # Its inputs are those of the building, and so are its rows.
+        # The last sheet of a frame has its rows, which are among those of the building.
         for sheet in list(_of_response(frame))[:-1]:
             yield replace(sheet, heading=f"{name} {sheet.heading}")
     yield Sheet("Rows", table=result.to_pandas(), beside=True)
@@ -250,6 +253,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
 
 
 def _of_response(result: FrameResult) -> Iterator[Sheet]:
+    """Yield the sheets of a frame's response without its inputs; the last has the rows."""
     largest = int(np.abs(result.displacement).argmax())
     whole = "Displacements, hinges and forces at the largest displacement of the top."
     shapes = (
@@ -452,6 +456,7 @@ def _of_ida(analysis: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[
 
 
 def _damped(structure: Structure) -> str:
+    """Return the damping of a structure in a sentence."""
     damping = structure.damping
     return f"Damping: {damping if damping is not None else 'none but that of the springs'}."
 
@@ -490,6 +495,7 @@ def _drawings(frame: Frame) -> dict[Section, str]:
 
 
 def _titled(drawing: Section, title: str) -> Any:
+    """Draw a section under a title."""
     drawn = section.section(drawing)
     drawn.set_title(title, fontsize=9)
     return drawn
@@ -522,6 +528,7 @@ def _described(frame: Frame) -> str:
 
 
 def _drawn(drawing: Section, values: _core.Statement) -> Sheet:
+    """Return the sheet of the inputs of a section, with values that go before its own."""
     drawn = (partial(section.section, drawing),)
     return Sheet("Inputs", str(drawing), drawn, inputs(values + drawing.drawing()))
 

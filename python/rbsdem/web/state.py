@@ -241,6 +241,7 @@ def state_of(asked: Mapping[str, Any]) -> list[Any]:
 
 
 def _is_groups(case: object) -> bool:
+    """Return whether a case has the form of groups: a list of [name, {key: value}]."""
     return isinstance(case, list) and all(
         isinstance(group, list)
         and len(group) == 2
@@ -338,6 +339,7 @@ def _entry(key: str, value: Any) -> str:
 
 
 def _written(key: str, value: Any) -> str:
+    """Return one value as a case file has it; `key` is for messages."""
     if isinstance(value, bool):
         return ".true." if value else ".false."
     if isinstance(value, int | float):
