@@ -242,6 +242,7 @@ def _ask(
         _NO_STRUCTURE if made is None else made.address,
         control,
     )
+    # Sizes of text, values and rows (`kept` rows of a width); whether a structure is kept too.
     status, length, count, width, kept, holds = sizes.tolist()
     # An answer without rows or structure is released when it has been read, an empty one at once.
     there = length or count or kept or holds

@@ -412,7 +412,7 @@ class Assessment(Tabular):
     def frame(self, name: str) -> Assessment:
         """Return what was found of one frame of a building, for the figures of frames.
 
-        Its columns in two planes have the row of this plane alone.
+        Columns that stand in two planes have only the row of this plane.
 
         Parameters
         ----------
@@ -440,7 +440,7 @@ class Assessment(Tabular):
         return (*self._axial_failures(), *self._sheared())
 
     def _axial_failures(self) -> tuple[str, ...]:
-        """Return members that may have lost their axial load before what is judged."""
+        """Return a warning of members that may have lost their axial load by the judged rows."""
         most = math.inf if self.displacement is None else abs(self.displacement)
         doubtful = self.result.may_have_lost(most)
         if not doubtful:

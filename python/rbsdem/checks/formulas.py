@@ -102,14 +102,14 @@ def wall_drift_at_loss(length: float, width: float, axis: float) -> float:
     """Return the drift at which a wall that bends has lost a fifth of its strength.
 
     0.078 (l_w c/b^2)^-0.41, l_w c/b^2 from 5 to 55: fitted to 39 walls of 20 publications that
-    bent, alone or with shear, and lost 15 % and more (`studies/walls_measured.py`); test over this
-    1.02, standard deviation of logarithms 0.29 with publications left out (ACI 318-19,
+    bent, alone or with shear, and lost 15 % and more (`studies/walls_measured.py`); tests are
+    1.02 times this, standard deviation of logarithms 0.29 with publications left out (ACI 318-19,
     18.10.6.2(b): 0.33).
 
     Parameters
     ----------
     length, width, axis : float
-        As for `aci_318.wall_drift`.
+        l_w, width b of the compression zone and depth c of the neutral axis, in one unit.
     """
     slender = min(max(length * axis / width**2, 5.0), 55.0)
     return 0.078 * math.exp(-0.41 * math.log(slender))

@@ -150,7 +150,7 @@ def _report_of(
 
 
 def _refuse_history(case: Case, path: str, words: Sequence[str]) -> None:
-    """Refuse rows or a state over a history, of which the executable gets the values alone."""
+    """Refuse to write over a history: the executable gets its values, and not its file's name."""
     folder = Path(path).parent
     written = [folder / name for name in case.files.values()]
     for word, following in pairwise([*words, ""]):

@@ -148,8 +148,9 @@ def strength_loss_point(
     Returns
     -------
     row : float
-        Number of the row there; 3.5 is half way between rows 3 and 4. Where the envelope is not
-        the curve itself, that of the next point of the envelope. NaN if there is none.
+        Number of the row there; 3.5 is half way between rows 3 and 4. If the loss lies between two
+        points of the envelope that are no neighbours on the curve, the row of the later one. NaN
+        without a loss.
     displacement : float
         That of `strength_loss`.
 
@@ -163,7 +164,7 @@ def strength_loss_point(
     d, f = columns(("displacement", "force"), displacement, force, least=0)
     turns = turning_points(d)
     sides = [_envelope(side * d, side * f, turns) for side in (1, -1)]
-    # A force between the envelopes, as on the way back, is no strength.
+    # A side whose largest force is less than half of that of the other side is not looked at.
     largest = max((np.max(y) for _, _, y in sides if y.size), default=0)
     for number, x, y in sides:
         if not y.size or 2 * np.max(y) < largest or not np.max(y) > 0:
@@ -478,16 +479,18 @@ def _asce_41(x: Array, y: Array) -> tuple[float, float, float, float]:
     """Return the lines with equal areas whose first one goes through 0.6 of the yield force.
 
     With a point (u, v) of the envelope at 0.6 of the yield force, the area of the lines is
-    (v end/0.6 + last end - last u/0.6)/2. Those points where it is that of the envelope lie on a
-    straight line, parallel to the chord. Where there are several, the lines that lie closest to the
-    envelope are taken: the least area between both, as the standard balances the areas above and
-    below.
+    (v end/0.6 + last end - last u/0.6)/2, with the displacement `end` and the force `last` of the
+    last point. The points (u, v) for which this area equals that of the envelope lie on a straight
+    line, parallel to the chord; `off` is how far the rows are off it. If the envelope meets it
+    several times, the lines with the least area between them and the envelope are taken, as the
+    standard balances the areas above and below.
     """
     total, end, last, reach = _area(x, y), float(x[-1]), float(y[-1]), float(y.max())
     off = end * y - last * x - 0.6 * (2.0 * total - last * end)
     off[np.abs(off) <= 1e-12 * end * reach] = 0.0
     low, high = off[:-1], off[1:]
-    # On a part that lies on that line, the furthest point with at <= end and no more than `reach`.
+    # On a part of the envelope that lies on that line, the furthest point whose yield point is not
+    # beyond the end nor above the largest force.
     along, up = np.diff(x), np.diff(y)
     with np.errstate(divide="ignore", invalid="ignore"):
         room = np.minimum(

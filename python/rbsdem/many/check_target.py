@@ -116,7 +116,7 @@ def check_target(
         The records; those of a building act along its direction. Each is scaled so that the mean
         logarithm of its spectrum over that of the demand is zero.
     periods : tuple of float, optional
-        Range of periods for it, in parts of the elastic one of the first mode.
+        Range of periods of this mean, over the elastic period of the first mode.
     jobs, progress
         As for `rbsdem.ensemble`.
     **solver
@@ -136,7 +136,7 @@ def check_target(
         frame = (frame.changed if of_building else partial(replace, frame))(damping=_DAMPING)
     low, high = (_arguments.number(value, "check_target: periods", above=0.0) for value in periods)
     t = np.geomspace(low * target.curve.period, high * target.curve.period, 40)
-    wanted = np.array([target.spectrum.sa(motion) for motion in t])
+    wanted = np.array([target.spectrum.sa(period) for period in t])
     several = _arguments.several(records, "check_target: records", "records")
     motions = [checked_motion(motion, "check_target: ") for motion in several]
     factors = [
@@ -148,6 +148,7 @@ def check_target(
     settings: Any = {"method": "newmark", "dt": 0.01} | solver
     shaken: Any = motions
     if of_building and frame.direction % 180.0:
+        # A record acts along the direction of the push: its parts along x and y are a pair.
         along = cosine_sine(frame.direction)
         named = [motion.name or str(i) for i, motion in enumerate(motions)]
         pairs = [

@@ -160,7 +160,10 @@ def fit_bounds(bounds: Bounds, beta: float | None = None) -> tuple[Array, Array,
 
 
 def _covariance(terms: _Terms, a: Array, b: Array, unit: Array, both: bool) -> Array:
-    """Return the covariance of mean and spread, from the curvature of the likelihood."""
+    """Return the covariance of mean and spread, from the curvature of the likelihood.
+
+    `both`: whether both are fitted; else the spread is stated, and only the mean varies.
+    """
     (h11, h12, h22), per = terms.derivatives(a, b)[1], unit / b
     with np.errstate(divide="ignore", invalid="ignore"):
         if not both:
@@ -219,6 +222,7 @@ class _Terms:
     def derivatives(self, a: Array, b: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Return the gradient (a, b), and the second derivatives with the other sign."""
         mass, u, v = self._mass(a, b)
+        # Densities at the ends over the probability between them.
         with np.errstate(over="ignore", invalid="ignore"):
             upper, lower = (
                 np.where(known, np.exp(-0.5 * end**2 - 0.5 * np.log(2 * np.pi) - mass), 0.0)

@@ -187,6 +187,7 @@ def _candidates(trials: MethodRuns) -> list[_Ladder]:
         Setting("rk4", level, dt=look.interval / parts, events="located"),
     ]
     if math.isfinite(look.implicit):
+        # At least 4000 steps in all.
         parts = max(math.ceil(look.interval / (look.duration / 4000)), 1)
         methods = ("generalised_alpha", "newmark")
         first += [Setting(method, level, dt=look.interval / parts) for method in methods]
@@ -557,6 +558,7 @@ def _effect(trials: MethodRuns, variant: Variant, base: MethodRun, tolerance: fl
         time_ratio=run.seconds / base.seconds,
         status=run.status,
     )
+    # A model that ends at another time has another answer.
     ends = new.response.size == old.response.size
     return replace(effect, matters=bool(effect.largest > tolerance or not ends))
 

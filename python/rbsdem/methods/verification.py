@@ -516,6 +516,7 @@ def two_degrees(**options: Any) -> Array:
     from scipy.optimize import brentq  # noqa: PLC0415
 
     def body(inertia: float) -> tuple[float, float, float]:
+        """Return mass, stiffness in shear and in bending of the body with a rotary inertia J."""
         # A unit force at the top accelerates it by 1 (1/m + 1/(4 J)), moves it by 0.3 in the end
         # (1/k_V + 1/k_M), and the sum of the eigenvalues is 7 (k_V + k_M/J).
         mass = 4 * inertia / (4 * inertia - 1)

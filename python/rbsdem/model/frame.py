@@ -616,7 +616,10 @@ def cells_of(
 def check_places(
     cells: Iterable[tuple[int, ...]], name: str, words: Sequence[str], most: Sequence[int]
 ) -> None:
-    """Refuse places that a grid does not have."""
+    """Refuse places that a grid does not have.
+
+    `words` name the numbers of a place, `most` are the largest ones; 0 stands for all.
+    """
     for place in cells:
         for word, at, last in zip(words, place, most, strict=True):
             if not 0 <= at <= last:

@@ -487,7 +487,7 @@ class Lap:
         _check_sizes(self, "lap", length="m", development_length="m")
 
     def developed(self, yield_stress: float, fc: float, diameter: float, axis: float) -> float:
-        """Return l_b/l_d.
+        """Return l_b/l_d, the length of the lap over the development length.
 
         Parameters
         ----------

@@ -606,6 +606,7 @@ class RectangularSection(Section):
                 for _, area, steel in self.bars
                 for _ in range(1 if self.laid_out else max(1, round(area / single)))
             ]
+            # Loaded along the width, what was x is y.
             other["bars"] = [
                 (x, 0.25 * math.pi * d**2, steel)
                 for (x, _, d), steel in zip(self.place_bars(self.single_bars), steels, strict=True)

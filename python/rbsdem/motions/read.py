@@ -259,7 +259,8 @@ def _check_peak(
 ) -> None:
     """Refuse the unit of the user where the file states a factor, or a peak that is far off.
 
-    Peaks of other components and of the uncorrected record are within a factor of five.
+    `values` are the accelerations [m/s2] that lines of the head state, each with its line. Peaks of
+    other components and of the uncorrected record are within a factor of five.
     """
     for line in head:
         factor = _FACTOR.search(_statement(line))

@@ -460,7 +460,10 @@ class SpringRotations(NamedTuple):
 
 
 def spring_rotations(result: FrameResult, row: int | NDArray[np.intp]) -> SpringRotations:
-    """Return the rotations of the springs by their members and nodes."""
+    """Return the rotations of hinges at members' ends, by member, and of panels, by node [rad].
+
+    Members with a `yield_moment` have elastic springs: of these only the part beyond is a hinge.
+    """
     structure = result.frame
     turns = SpringRotations(
         {name: np.zeros((*np.shape(row), 2)) for name in structure.parts.members}, {}

@@ -170,6 +170,7 @@ def _heading(name: str) -> tuple[str, float]:
 
 
 def _figure(value: float, factor: float) -> str:
+    """Return a number times a factor with three digits; whole numbers as they are, NaN a dash."""
     import pandas  # noqa: PLC0415
 
     if pandas.isna(value):
@@ -183,6 +184,7 @@ def _figure(value: float, factor: float) -> str:
 
 
 def _word(value: object) -> str:
+    """Return a value that is no number as one line of text."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     lines = "" if value is None else str(value)

@@ -324,7 +324,7 @@ def distance(features: Sequence[float], others: Sequence[float]) -> float:
     Parameters
     ----------
     features, others : sequence of float
-        Of both. 1 is a difference of 0.15 in the axial load ratio, or of 0.4 in the logarithm of
+        Those of both columns. A distance of 1 is a difference of 0.15 in the axial load ratio, or of 0.4 in the logarithm of
         the shear span over the depth, 0.35 of the concrete strength, 0.4 and 0.6 of the mechanical
         ratios of bars and ties.
     """

@@ -127,7 +127,7 @@ def learn(column: LayeredColumn, displacement: Array, given: Sequence[Told]) -> 
 
 
 def told(loop: Loop) -> Told:
-    """Return what a test says.
+    """Return what a test says of its laboratory: the equations of least squares along its path.
 
     Parameters
     ----------

@@ -491,9 +491,9 @@ class Frame:
     ) -> _core.Statement:
         """Return the groups of a case file; some cells may be drawn, with `more` keys of the grid.
 
-        Of a drawn cell, and of the sections of a kind, `drawn` has the keys that name its drawings;
-        the floors, nodes and members of a drawing stand in the place of those that were made of
-        them.
+        `drawn` has, for each drawn cell and for the sections of each kind, the keys that name the
+        drawings. With a `drawing`, its floors, nodes and members stand in the place of those that
+        were made from them.
         """
         grids: Any = cells or (self.columns or {}, self.beams or {})
         drawn = drawn or {}
@@ -757,7 +757,9 @@ class FrameInPlan(Frame):
 def drawings_of(
     cells: Iterable[Any], hoops: Ties | Literal["none"] | None = None
 ) -> tuple[dict[Any, dict[str, Any]], _core.Statement, Any]:
-    """Return the keys of the cells that are drawn, the groups of their sections, and of hoops.
+    """Return the keys of drawn cells, the groups of their sections, and what names the hoops.
+
+    Hoops are named by a drawing that has them; "none" and None stay as they are.
 
     Parameters
     ----------
@@ -773,6 +775,7 @@ def drawings_of(
     taken = {cell.name for cell in kinds}
 
     def name_of(section: Section) -> _core.Text:
+        """Return the name of the drawing of a section; a new one is entered in `drawings`."""
         names = (f"section-{i}" for i in count(1))
         free = (name for name in names if name not in {*taken, *drawings.values()})
         return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))

@@ -262,6 +262,7 @@ class JointPanel:
                 d_c=_STRAIN_CRACKED, f_c=first, d_y=_STRAIN_PEAK, f_y=peak, d_cap=_STRAIN_END,
                 f_cap=peak, d_pc=fall, f_res=_LEFT * peak, **_PINCHING,
             )  # fmt: skip
+        # With hooked bars the panel reaches its strength at the first crack.
         return Pinching(
             d_y=_STRAIN_CRACKED, f_y=peak, d_cap=_STRAIN_PEAK, f_cap=peak, d_pc=fall,
             f_res=_LEFT * peak, **_PINCHING,

@@ -349,6 +349,7 @@ class Building(Frame):
         frame, prefix = self.plane(name).frame, f"{name}:"
         of_all = dict(zip(self.parts.members, self.parts.compression.tolist(), strict=True))
         compression = np.array([of_all[prefix + member] for member in frame.parts.members])
+        # Cached properties of the copy are set to what they are in the building.
         inside = copy(frame)
         _arguments.put(inside, kinematics=self.kinematics)
         vars(inside)["parts"] = replace(frame.parts, compression=compression, mass=self.parts.mass)

@@ -179,6 +179,7 @@ class PlanDrawing:
 
     def _is_joined(self, i: int, j: int, floor: int) -> bool:
         """Return whether a column or a beam ends where two lines cross."""
+        # The columns below and above the floor, then the beams on all four sides.
         storeys = range(floor, min(floor + 1, len(self.storeys)) + 1)
         if any(self.column(Line("x", j), i, k) is not None for k in storeys):
             return True

@@ -463,7 +463,7 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
 
 
 def _capped(load: Array, moment: Array, most: float) -> tuple[Array, Array]:
-    """Return a curve up to an axial load, closed by the line there."""
+    """Return a curve up to an axial load, and from there level to no moment."""
     over = np.flatnonzero(load > most)
     if over.size == 0:
         return load, moment
@@ -636,7 +636,7 @@ def shear_strength_mcft(
     crushed = 0.25 * sizes.fc * width * z
 
     def strength(v: float) -> float:
-        """Return the shear strength under the strain at mid-depth that a shear force v makes [N]."""
+        """Return the strength [N] at the strain at mid-depth under a shear force v [N]."""
         eps_x = max((v * arm / d + v - pressed) / steel, 0.0)
         beta = 0.4 / (1.0 + 1500.0 * eps_x) * 1300.0 / size
         theta = math.radians(min((29.0 + 7000.0 * eps_x) * turn, 75.0))

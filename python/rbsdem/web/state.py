@@ -398,12 +398,13 @@ def case_of(
 
 
 def _check_sizes(groups: Groups, faults: Faults) -> None:
-    """Refuse what a page is too small for."""
+    """Add faults for grids and numbers of cycles that a page is too small for."""
     for i, (_, values) in enumerate(groups):
         several = {key: value for key, value in values.items() if isinstance(value, list)}
         for key in ("storeys", "bays", "bays_x", "bays_y"):
             if len(several.get(key, ())) > _MOST_CELLS:
                 faults.add(f"{i}.{key}", f"give at most {_MOST_CELLS} of them")
+        # A single number of cycles is that at each amplitude.
         counts = several.get("cycles") or [values.get("cycles", 1)]
         each = len(several.get("amplitudes", ())) if len(counts) == 1 else 1
         many = each * sum(one for one in counts if isinstance(one, int | float))
