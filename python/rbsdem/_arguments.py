@@ -170,7 +170,7 @@ def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
 
 
 def finite_vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
-    """Return `vector` of them; every value must be finite and have a meaning."""
+    """Return what `vector` returns for `values`, each finite and at most `BEYOND_MEANING`."""
     array = vector(values, name, shape=shape)
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:

@@ -45,7 +45,7 @@ class Command(click.Command):
     """A command whose `Values` take several words."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Repeat the name of such an option before each of its values."""
+        """Repeat the name of an option of the type `Values` before each of its values."""
         several = {name for p in self.params if isinstance(p, Values) for name in p.opts}
         words: list[str] = []
         option = ""

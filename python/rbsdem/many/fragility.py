@@ -194,8 +194,8 @@ def _part(
     """Return the integral of exp(y + s (u - x)) over the density of ln capacity, low to high.
 
     `law` is (x, y, s), a line of the hazard in logarithms; u = ln capacity is normal (mu, beta).
-    The product is a normal density about mu + s beta^2. Where both ends lie on one side of it, each end
-    is the product there times Mills' ratio, and no large exponents cancel.
+    The product is a normal density about mu + s beta^2. Where both ends lie on one side of it,
+    each end is the product there times Mills' ratio, and no large exponents cancel.
     """
     x, y, s = law
     ends = [(end - mu) / beta - s * beta for end in (low, high)]

@@ -324,9 +324,9 @@ def distance(features: Sequence[float], others: Sequence[float]) -> float:
     Parameters
     ----------
     features, others : sequence of float
-        Those of both columns. A distance of 1 is a difference of 0.15 in the axial load ratio, or of 0.4 in the logarithm of
-        the shear span over the depth, 0.35 of the concrete strength, 0.4 and 0.6 of the mechanical
-        ratios of bars and ties.
+        Those of both columns. A distance of 1 is a difference of 0.15 in the axial load ratio, or
+        a difference of logarithms: 0.4 for the shear span over the depth, 0.35 for the concrete
+        strength, 0.4 for the mechanical ratio of the bars and 0.6 for that of the ties.
     """
     return math.dist(
         *(
@@ -493,7 +493,7 @@ def sample(
     rows = np.empty((number, displacement.size))
     for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
         strength, stiffness, degradation = np.exp(np.array(sizes) * np.array(point)).tolist()
-        # A column that is softer by a factor is where the other is at a smaller displacement.
+        # A column stiffer by a factor has at d the force of the model at d times the factor.
         changed, path = _degraded(column, degradation), displacement * stiffness
         row[:] = strength * path_force(changed, path, rig=rig)
     return rows

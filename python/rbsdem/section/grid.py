@@ -494,6 +494,8 @@ class Grid:
             clear = [self.storeys[k - 1] - sum(ends[i, k]) for k in levels]
             if min(clear) <= 0.0:
                 continue
+            # The mean plastic moments of the column of each storey at its two ends, and the sum of
+            # those of the beams at each floor, at the axis of a wall where the line is one.
             try:
                 plastic = [
                     tuple(sum(plastic_moments(half, load[i, k])) / 2 for half in halves_of(cell))

@@ -112,7 +112,8 @@ def strips_of(
     held = _restrained(section) if restrained is None else restrained
     given: Any = {"round_core": round_core, "number": number, "held": float(held)}
     answer = _core.evaluate("section_strips", section._statement, **given)
-    # Slivers along the rim of the core are round-off.
+    # A row is y and the area of the core of a strip, then y and the area of its cover. Slivers
+    # along the rim of the core are round-off.
     least = 1e-9 * section.gross_area
     strips, (left, right, *pressures) = answer.rows, answer.values.tolist()
     return Strips(
