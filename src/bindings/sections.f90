@@ -79,7 +79,7 @@ contains
          type(resultants_type) :: least, most
          type(events_type) :: events
          real(c_double), pointer, contiguous :: curvature(:)
-         !> Strains at the two axial loads, which are not asked for here
+         !> Strains at least and largest axial load, which Python does not ask for
          real(c_double) :: strain(2)
 
          associate (given => reader%diagram)
@@ -177,6 +177,7 @@ contains
          !> Number of bars that legs hold, as the only value
          real(c_double), intent(in) :: held(:)
          type(confinement_form) :: form
+         !> Confinement on the side y < 0 and on the side y > 0
          type(confinement_type) :: found(2)
          type(hooped_core) :: core
          integer :: side

@@ -88,6 +88,7 @@ contains
 
          last = size(ladder%amplitude)
          top = ladder%amplitude(last)
+         ! An amplitude that is the largest but for round-off is in it.
          most = largest*(1.0_wp + 1e-9_wp)
          if (.not. largest > 0.0_wp) most = top
          if (most < ladder%amplitude(1)) then

@@ -170,6 +170,7 @@ contains
          column = 0
          do j = 1, n
             do i = 1, 3
+               ! First empty places alone, then taken ones alone
                if (exchanges <= 3 .eqv. basis(i) > 0) cycle
                ratio = a(i, j)**2*stiff(i)*soft(j)
                if (.not. ratio > largest) cycle

@@ -297,8 +297,8 @@ contains
       call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, result%f, &
                                result%work, load(lateral), load(horizontal), result%work(n + 1), &
                                result%work(2*n + 1), result%a)
-      ! Acceleration of the top; change of the momentum along x, with its sign turned, from the forces on the
-      ! chain.
+      ! Acceleration of the top, as numbers 2 n and 3 n are those of the last body; change of the momentum
+      ! along x, with its sign turned, from the forces on the chain.
       result%of_speeds(lateral) = result%work(2*n) + self%upper(n)*result%work(3*n)
       result%of_speeds(horizontal) = -(load(lateral) - result%f(1) - self%mass_above(1)*load(horizontal))
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v

@@ -114,7 +114,7 @@ contains
 
       !> Centroids and rotary inertias of the bodies; those of the last one with the mass lumped at the top.
       subroutine set_bodies()
-         real(wp) :: own, shift
+         real(wp) :: body_mass, shift
          integer :: i, n
 
          n = column%n
@@ -133,13 +133,13 @@ contains
             return
          end if
          if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
-         ! The centroid of the last body moves up by `shift`. With parallel axes the body adds own shift^2 and
-         ! the lumped mass top_mass (upper - shift)^2, together own shift upper.
-         own = column%mass(n)
-         shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
-         column%inertia(n) = column%inertia(n) + spec%top_inertia + own*shift*column%upper(n)
-         column%mass(n) = own + spec%top_mass
-         column%upper(n) = own/column%mass(n)*column%upper(n)
+         ! The centroid of the last body moves up by `shift`. About it the body adds body_mass shift^2
+         ! and the lumped mass top_mass (upper - shift)^2, together body_mass shift upper.
+         body_mass = column%mass(n)
+         shift = spec%top_mass/(body_mass + spec%top_mass)*column%upper(n)
+         column%inertia(n) = column%inertia(n) + spec%top_inertia + body_mass*shift*column%upper(n)
+         column%mass(n) = body_mass + spec%top_mass
+         column%upper(n) = body_mass/column%mass(n)*column%upper(n)
          column%lower(n) = column%length(n) - column%upper(n)
       end subroutine set_bodies
 
@@ -186,8 +186,9 @@ contains
          allocate (column%at(3, n), source=0)
          do i = 1, n
             column%at(:2, i) = [i, n + i]
-            ! A shear spring may ask for the work of the flexural one of its joint.
+            ! With a footing joints have numbers from 0 on.
             joint = merge(i - 1, i, column%footing)
+            ! A shear spring may ask for the work of the flexural one of its joint, spring n + i.
             column%location(i) = spring_location(shear, 1, joint, n + i, n + i, i)
             column%location(n + i) = spring_location(flexure, 1, joint, index=i)
             if (.not. column%opens) cycle
@@ -237,6 +238,7 @@ contains
       column%base_spring = column%at(shear, 1)
       ! Translations, rotations, and openings if there are some.
       allocate (column%group(merge(3, 2, column%opens)))
+      ! First unknown, count, step; first and last spring; largest force per lateral force
       column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
       column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))
       if (column%opens) column%group(3) = unknown_group(2*n + 1, n, 1, 2*n + 1, 3*n)

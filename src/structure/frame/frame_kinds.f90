@@ -43,7 +43,7 @@ contains
       !> Largest `stiffness_of` members of the frame that are not rigid
       real(wp), intent(in) :: stiffest(2)
       !> A spring of bending at a point of the rule; E A [N] and E I [N m2]
-      type(spring_record) :: one
+      type(spring_record) :: hinge
       real(wp) :: rigidity(2)
       integer :: i, j, k, group
 
@@ -64,13 +64,13 @@ contains
          m%lumped = .true.
          do i = 1, 3
             ! Curvature of the member in three springs that together bend as it does.
-            one = elastic(rigidity(2)/(share(i)*clear))
+            hinge = elastic(rigidity(2)/(share(i)*clear))
             if (is_given(kind%yield_moment)) then
-               one%rule = 'bilinear'
+               hinge%rule = 'bilinear'
                ! Rotation at yielding, and stiffness after it
-               one%value(2:3) = [kind%yield_moment/one%value(1), kind%hardening*one%value(1)]
+               hinge%value(2:3) = [kind%yield_moment/hinge%value(1), kind%hardening*hinge%value(1)]
             end if
-            call append_spring(m, flexure, point(i), one)
+            call append_spring(m, flexure, point(i), hinge)
          end do
          if (kind%shear_rigidity > 0.0_wp) then
             call append_spring(m, shear, 0.5_wp, elastic(kind%shear_rigidity/clear))

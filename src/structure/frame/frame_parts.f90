@@ -270,6 +270,8 @@ contains
       do i = 1, size(record%floor)
          if (any(record%floor(i)%floor == [0, storey])) mass = record%floor(i)%mass
       end do
+      ! Half of each bay goes to the node on either side; bays without both nodes count for nothing, and a
+      ! floor without bays is shared alike.
       width = 0.0_wp
       if (size(width) > 0) width = merge(record%bays, 0.0_wp, is_joined(:size(width)) .and. is_joined(2:))
       if (sum(width) > 0.0_wp) then
@@ -736,6 +738,7 @@ contains
          associate (node => self%node(i))
             ! Where no mass is given all nodes count alike.
             if (.not. (has_mass .or. node%held(1))) mass(i) = 1.0_wp
+            ! Along x, nothing upward
             node%push = [mass(i), 0.0_wp]
             if (record%pattern == 'triangular') node%push = node%push*(node%y - lowest)
          end associate

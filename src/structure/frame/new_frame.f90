@@ -452,6 +452,7 @@ contains
                if (node(i)%ground(j)%rule /= '') then
                   last = last + 1
                   frame%ground(last - frame%member_springs) = at
+                  ! No member, no joint, no source of work; the index is that of the node.
                   frame%location(last) = spring_location(kind_of(j), 0, 0, 0, 0, i, 'node '//node(i)%name)
                   spring(last) = node(i)%ground(j)
                end if
@@ -602,6 +603,7 @@ contains
                do j = 1, size(m%kind)
                   spring(before + j) = m%spring(j)
                   frame%position_ratio(before + j) = m%position(j)
+                  ! Only shear springs ask for the work of others.
                   frame%location(before + j) = spring_location(m%kind(j), i, m%joint(j), 0, 0, i, m%name)
                   if (m%kind(j) == shear) call assign_work_source(m, j, before, frame%location(before + j))
                end do
