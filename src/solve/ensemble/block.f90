@@ -70,6 +70,7 @@ contains
       if (allocated(of_runs%before) .or. is_given(of_runs%analysis%max_seconds)) return
       select type (column => of_runs%structure)
       class is (column_type)
+         ! Slip and rotation of one body
          if (column%unknowns /= 2 .or. column%held .or. column%kinematics == finite) return
          if (any(column%rules%name == 'layered')) return
       class default
@@ -83,6 +84,7 @@ contains
       case default
          return
       end select
+      ! The clock of the lanes starts at 0, and their steps divide the intervals of the motion.
       if (plan%free .or. abs(time(1)) > 0.0_wp) return
       if (any(plan%parts /= plan%parts(1))) return
       do i = 1, size(time) - 1

@@ -154,6 +154,7 @@ contains
             last = last - 1
          end if
          if (.not. paper) return
+         ! The unknowns change, the equations stay.
          do i = n + 1, last - 1
             a(:, i) = a(:, i) - a(:, i + 1)
          end do

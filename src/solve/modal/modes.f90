@@ -339,6 +339,7 @@ contains
       associate (m => self%dynamic%modes, unknowns => size(self%dynamic%inertia))
          s = min(self%dynamic%sum_of_squares(), sqrt(huge(1.0_wp)))
          allocate (self%low(m), source=0.0_wp)
+         ! The sum bounds them all, round-off included.
          allocate (self%high(m), source=1.01_wp*s)
          allocate (self%below_low(m), source=0)
          allocate (self%below_high(m), source=m)

@@ -203,11 +203,13 @@ contains
       taken = .false.
       self%stuck = .false.
       self%events = 0
+      ! What the start of the step gives to the motion, and to the balance
       self%before(1) = self%h*self%v0(1) + (self%h**2*(0.5_wp - self%beta))*self%a0(1)
       self%before(2) = self%h*self%v0(2) + (self%h**2*(0.5_wp - self%beta))*self%a0(2)
       self%carried(1) = self%alpha_f*self%g0(1) - self%mass(1)*(self%alpha_m*self%a0(1))
       self%carried(2) = self%alpha_f*self%g0(2) - self%mass(2)*(self%alpha_m*self%a0(2))
       do trial = 1, most_trials
+         ! The first trial is given; each other one follows from the residual of the one before.
          if (trial > 1) then
             call fit(self)
             self%dx(1) = self%inverse(1)*self%r(1) + self%inverse(2)*self%r(2)
@@ -279,6 +281,7 @@ contains
       real(wp) :: share, now
       integer :: trial
 
+      ! Between the start of the correction, share 0, and its end, share 1
       bracket = false_position(0.0_wp, 1.0_wp, self%work, slope)
       now = 1.0_wp
       do trial = 1, most_trials

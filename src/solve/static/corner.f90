@@ -96,12 +96,14 @@ contains
 
          call path%springs%restore()
          call follow_through(path, found)
+         ! The way found may lead back, which counts only where the path may go back.
          back = found .and. path%direction /= direction
          found = found .and. (path%may_go_back .or. .not. back)
          if (.not. path%goes_back .and. (back .or. .not. found)) then
             back = found
             call path%springs%restore()
             changed = 0
+            ! With less effort where a way back is at hand
             call search(merge(by_blocks, to_the_end, back))
             back = back .and. .not. found
             if (back) then
@@ -360,11 +362,14 @@ contains
          do i = 1, m
             if (.not. abs(path%rate(i)) > 0.0_wp) cycle
             way = merge(1, -1, path%rate(i) > 0.0_wp)
+            ! A spring inside its line takes part when it is blocked: ahead is then where it came from.
             if (ahead(i) == 0) then
                if (.not. is_blocked(i)) cycle
                ahead(i) = -way
             end if
             if (line(i) == merge(on, back, way == ahead(i))) cycle
+            ! The lines of a spring lie in the order ahead, came, back. One inside its line, or that came on a
+            ! one-way line, turns back only after its gap.
             next(i) = line(i) - way*ahead(i)
             if (path%arrived(i) == 0) then
                at(i) = -ahead(i)*gap(i)
@@ -380,6 +385,7 @@ contains
          heading = 0
          least = minval(clearance)
          if (.not. least < huge(1.0_wp)) return
+         ! Move on to the nearest change; springs that are as near, or nearly so, change with it.
          v = v + least*path%rate(:m)
          do i = 1, m
             if (.not. clearance(i) < huge(1.0_wp)) cycle
@@ -425,6 +431,7 @@ contains
 
       if (path%springs%joints%count == 0) return
       call path%springs%restore()
+      ! Springs that have come to the corner go on to the lines ahead.
       do i = 1, path%moving
          if (path%arrived(i) /= 0) call leave(path%springs, i, path%arrived(i))
       end do

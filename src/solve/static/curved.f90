@@ -77,6 +77,7 @@ contains
       if (varies) path%without_top_load => path%equilibrium%without_top_load
       call begin_path(path, by_force, m, varies, task%before, error)
       if (allocated(error)) return
+      ! From the start on, the work that the axial load has done before belongs to the balance.
       if (.not. task%resumes()) then
          call path%reset_reference()
          path%at_begin = path%at_begin + path%load_work
@@ -203,6 +204,7 @@ contains
          turns = .false.
          self%trial = self%current
          call find_event(self, limit)
+         ! So near to the goal or to an event the point along the tangent has all its digits.
          near = (self%line > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
                 abs(self%trial%t - self%current%t) <= close_by*self%extent .and. &
                 abs(self%trial%t - self%current%t)*rotation_rate <= close_by
@@ -212,6 +214,7 @@ contains
          if (done .and. .not. near) then
             done = self%curve%is_gentle(self%structure)
             if (done) turns = self%curve%least_rate(self%trial) < 0.0_wp
+            ! A motion on a one-way line has turned back before the end: the stride ends where it turns.
             if (turns) then
                call find_turn(self, done)
                if (done) call self%curve%set(self%structure, self%current, self%trial)
@@ -333,11 +336,11 @@ contains
       end if
    end subroutine report_no_path
 
-   !> Corrections that take the springs to equilibrium at the present displacement of the top, or under the
-   !> present lateral force, and the present axial load. What the path drives is set back afterwards.
+   !> Corrections that take the springs to equilibrium at the present displacement of the top under the
+   !> present axial load. What the path drives is set back afterwards.
    subroutine find_balance(self, by_force, correction, force, found)
       class(curved_path), intent(inout) :: self
-      !> Whether the lateral force is held, else the displacement of the top
+      !> False on a curved path, which holds the displacement and not the force
       logical, intent(in) :: by_force
       !> Corrections of the deformations (unknowns), and of the lateral force [N]
       real(wp), intent(out) :: correction(:), force

@@ -242,6 +242,7 @@ contains
       per = self%per
       associate (load => self%residual, band => self%tangent%band, f => self%f, at => self%column%at)
          do i = 1, self%column%n
+            ! Unknown j is the rotation of the body below, and those of the joint come behind it.
             j = per*(i - 1)
             load(j + 1) = load(j + 1) - f(at(shear, i))
             band(1, j + 1) = band(1, j + 1) + k(i, shear)

@@ -179,6 +179,7 @@ contains
          call follow_band(self, springs, by_force, residual, force, rate, found)
          return
       end if
+      ! Joints in series are each by themselves.
       call self%find_unbalance(springs, force)
       associate (arm => self%structure%arm(:self%moving), k => springs%k(:self%moving), &
                  initial => self%structure%initial_stiffness(:self%moving), r => self%f(:self%moving))
@@ -455,6 +456,7 @@ contains
          self%f = springs%forces(springs%d)
          call structure%forces(springs%d, signal, self%axial, self%tangent, self%f, self%residual, &
                                self%inner, merge(force, 1.0_wp, self%of_dead_load))
+         ! All of the dead load on the structure without deformations
          if (self%of_dead_load) then
             self%moved(:, 1) = 0.0_wp
             self%f = 0.0_wp

@@ -75,6 +75,7 @@ contains
          if (goes_on) then
             path%displacement = checkpoint%displacement
             path%force = checkpoint%force
+            ! The same kind of path takes up its memory; another one begins a line here.
             if (checkpoint%method == kind_of(path, varies)) then
                call path%serialize(before%stream)
                if (before%stream%broken) then

@@ -399,6 +399,8 @@ contains
          call keep_within(m, self%springs%d, line%correction, self%rate, self%springs%lower, &
                           self%springs%upper, self%q)
          residual = self%displacement - self%structure%top_displacement(self%q)
+         ! The displacement follows the springs where the force is driven; else they go on along the line to
+         ! it.
          if (self%by_force) then
             self%displacement_start = self%displacement - residual
          else if (abs(residual) > 0.0_wp .and. .not. turns) then

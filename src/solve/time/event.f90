@@ -110,6 +110,7 @@ contains
       real(wp) :: finish
 
       associate (i => event%spring)
+         ! Where the motion turns back: the velocity in the new direction, whose rate is the acceleration
          if (event%turns) then
             call state%motion%acceleration(state%springs, scheme%q, scheme%v, scheme%load, now)
             distance = event%direction*scheme%v(i)

@@ -108,6 +108,7 @@ contains
       real(wp), intent(out) :: change(3)
       real(wp) :: moved(2)
 
+      ! dD, by which the gap has changed
       moved = (moved_above(:2) - moved_below(:2)) - joint%above*above%tb*moved_above(3) &
             - joint%below*below%tb*moved_below(3)
       joint%finish = joint%start + moved

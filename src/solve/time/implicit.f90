@@ -215,6 +215,7 @@ contains
 
       if (self%marked) call state%springs%restore()
       call self%try_start(state)
+      ! With a little resistance from the start of the step, and from where that leads without any
       self%step%now%anchor(:) = state%q
       call self%resist(little)
       call self%step%find_residual(state, self%h, self%load, self%residual)

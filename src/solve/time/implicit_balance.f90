@@ -167,6 +167,7 @@ contains
       allocate (stiff(structure%coordinates), source=0.0_wp)
       associate (joints => structure%joints, k => structure%initial_stiffness)
          stiff(:size(unit)) = unit*k
+         ! Layers count by opening and rotation of their joint.
          do j = 1, joints%count
             unit(joints%first(j) + 1) = 1.0_wp/structure%total_height
             associate (of => [(i, i=joints%first(j), joints%last(j))], at => joints%before + 2*j)
@@ -541,6 +542,7 @@ contains
          force = 0.0_wp
          rest = huge(1.0_wp)
          do round = 0, most_rounds
+            ! Motion that each mode has beyond what its damping force stands for
             moved = dx(massed)
             do j = 1, size(force)
                lacking(j) = inner_product(size(moved), momenta(:, j), moved) - force(j)/self%damping_factor

@@ -149,6 +149,7 @@ contains
       self%joint%start(1) = self%joint%finish(1)
       self%joint%start(2) = self%joint%finish(2)
       self%moved = 0.0_wp
+      ! The first trial: nothing has moved.
       call self%try(state, 0.0_wp)
       call self%iterate(state)
       self%busiest = maxloc(abs(self%change)*self%column%initial_stiffness, dim=1)

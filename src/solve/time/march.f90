@@ -212,6 +212,7 @@ contains
             call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
             response%a(:) = now%a
          end if
+         ! Without damping the forces of the springs are all.
          if (state%motion%damped) then
             call state%motion%joint_forces(state%springs, state%q, state%v, state%load, response%f)
             response%base_shear = state%motion%base_shear(state%springs, state%q, state%v)

@@ -144,6 +144,7 @@ contains
       call state%springs%carry_to(self%step%q1)
       associate (structure => state%motion%structure, work => state%springs%work, &
                  work_before => state%springs%journal%work)
+         ! The journal has the works at the start of the step.
          kinetic = structure%kinetic_energy(state%q, state%v)
          potential = structure%potential_energy(state%q)
          loss = self%of_loads - self%of_damping &
