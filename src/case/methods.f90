@@ -7,7 +7,7 @@ module rbs_case_methods
    private
 
    public :: method_type, methods, method_named, method_choices, takes, quoted_names, method_rows
-   public :: usual_tolerance, usual_rho_infinity, methods_columns, responses_tried
+   public :: usual_tolerance, usual_rho_infinity, methods_columns
 
    !> Usual settings: error of a step of rk45, spectral radius at infinite frequency.
    real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho_infinity = 0.8_wp
@@ -36,8 +36,11 @@ module rbs_case_methods
       !> Least spectral radius at infinite frequency
       real(wp) :: least_rho_infinity = 0.0_wp
       !> Errors at its own step or tolerance, relative to the peaks: the median and the largest of the
-      !> responses of studies/error_classes.py. 0: round-off, or those of the method that is chosen
+      !> responses of studies/error_classes.py, or of the leaps of studies/random_frames.py. 0: round-off, or
+      !> those of the method that is chosen
       real(wp) :: usual_error = 0.0_wp, largest_error = 0.0_wp
+      !> How many responses these were
+      integer :: responses = responses_tried
       !> Time of a step for each body and one more, by the same study [s]
       real(wp) :: body_step = 0.0_wp
    end type method_type
@@ -47,7 +50,8 @@ module rbs_case_methods
    !> tolerance, and the springs would follow this false motion.
    type(method_type), parameter :: methods(8) = [ &
       method_type('static', in_time=.false., dt=.false.), &
-      method_type('newton', in_time=.false., dt=.false.), &
+      method_type('newton', in_time=.false., dt=.false., usual_error=1.0e-5_wp, largest_error=1.0e-2_wp, &
+                  responses=592), &
       method_type('auto', tolerance=.true.), &
       method_type('rk4', order=4, explicit=.true., events=.true., allow_unstable=.true., &
                   limit_share=0.2_wp, usual_error=1.0e-4_wp, largest_error=3.0e-3_wp, &
@@ -152,7 +156,7 @@ contains
          end do
          text = trim(text)//' '//to_text(method%limit_share)//' '//to_text(method%period_share)//' '// &
                 to_text(method%usual_error)//' '//to_text(method%largest_error)//' '// &
-                to_text(merge(responses_tried, 0, method%largest_error > 0.0_wp))
+                to_text(merge(method%responses, 0, method%largest_error > 0.0_wp))
       end do
    end subroutine method_rows
 

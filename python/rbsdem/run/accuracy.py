@@ -196,8 +196,8 @@ class ErrorEstimate:
         a static path.
     usual, largest : float
         Error of the method at its own step or tolerance, relative to the peaks: median and largest
-        of the responses of ``studies/error_classes.py``, which say little of another one. 0 for a
-        static path, which is exact but for round-off.
+        of the responses of ``studies/error_classes.py``, or of the frames in ``docs/plans.md`` for
+        leaps, which say little of another one. 0 for "static", which is exact but for round-off.
     responses : int
         How many responses those were.
     own_setting : bool

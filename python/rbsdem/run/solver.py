@@ -83,7 +83,7 @@ class Method:
     name : str
         Name in `time_history(method=...)` and in a case file.
     order : int
-        Order of accuracy; 0 for "static" and "auto".
+        Order of accuracy; 0 for static paths and "auto".
     kind : {"static", "choice", "explicit", "implicit"}
         "choice" is "auto", which stands for one of the others.
     adaptive : bool
@@ -95,8 +95,9 @@ class Method:
         longest natural period; 0 if it does not depend on that. For "rk45" it is the longest step.
     usual_error, largest_error : float
         Errors at this step, or at the tolerance by default, over the peaks: median and largest of
-        the responses of ``studies/error_classes.py``. 0 for "static" (round-off), and for "auto",
-        which has those of the method that it chooses.
+        the responses of ``studies/error_classes.py``, of "newton" of the frames in
+        ``docs/plans.md``. 0 for "static" (round-off), and for "auto", which has those of the method
+        that it chooses.
     responses : int
         How many responses these are.
     """

@@ -4,7 +4,7 @@ module rbs_solve_time_run_dynamic
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
+   use rbs_case_methods, only: method_type, methods, method_named, usual_tolerance, &
                                usual_rho_infinity
    use rbs_base_check, only: is_given, check_values
    use rbs_solve_task, only: task_type
@@ -171,7 +171,7 @@ contains
          end if
          chosen = method_named(plan%method)
          plan%reason = trim(plan%reason)//'; errors over the peaks: '//to_text(chosen%usual_error)// &
-                       ' in the median of '//to_text(responses_tried)//' responses, '// &
+                       ' in the median of '//to_text(chosen%responses)//' responses, '// &
                        to_text(chosen%largest_error)//' at most'
       end subroutine choose_method
 
