@@ -405,12 +405,14 @@ contains
       rho = 0.0_wp
       do
          call split(self%low(j), self%high(j), shift)
+         ! Bisect until mode j alone is between its bounds, and whenever the iteration has gone astray.
          if (more .and. (astray .or. self%below_low(j) /= j - 1 .or. self%below_high(j) /= j)) then
             below = count_below(self, shift)
             astray = .false.
             step = 0
             cycle
          end if
+         ! No number is left between the bounds: the lower one is the square to the last digit.
          if (.not. more) then
             step = 0
             shift = self%low(j)

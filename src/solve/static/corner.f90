@@ -297,6 +297,8 @@ contains
       forward = path%springs%k(:m)
       heading = ahead
       path%passes = .true.
+      ! A pivot: rates on the present lines, in the sense in which the springs that changed last go on, up to
+      ! the springs that change next. Where none does, this is the way out.
       do pivots = 1, 100 + 4*m
          call find_rates(1)
          if (.not. found) exit

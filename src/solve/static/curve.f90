@@ -129,8 +129,7 @@ contains
       associate (rise => force(2) - force(1), step => displacement(2) - displacement(1), &
                  force_slope => self%length*force_rate, slope => self%length*displacement_rate)
          work(1) = 0.5_wp*(force(1) + force(2))*step
-         ! By the parameter; where both slopes have one sign throughout also by the displacement, and by the
-         ! force
+         ! By the parameter; where the slopes allow it also by the displacement, and by the force
          correction = ((force_slope(1) - force_slope(2))*step - rise*(slope(1) - slope(2)))/10.0_wp &
                    + (force_slope(2)*slope(1) - force_slope(1)*slope(2))/60.0_wp
          if (product(force_slope)*product(slope) > 0.0_wp) then

@@ -169,6 +169,7 @@ contains
       integer :: i
 
       self%line = 0
+      ! Between the present point, before the turn, and the farthest tried, beyond it
       line = false_position(self%current%t, self%trial%t, self%curve%least_rate(self%current), &
                             self%curve%least_rate(self%trial))
       done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp

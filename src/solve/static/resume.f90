@@ -193,6 +193,7 @@ contains
          correction = next_correction
          force_correction = next_force
          if (.not. is_settled) cycle
+         ! The last correction is made too.
          call try(1.0_wp)
          exit
       end do

@@ -228,6 +228,7 @@ contains
             ! Share of the leap before the turn, if the rates change there alone.
             share = ((springs%d(i) - springs%journal%d(i))/change - rate(i))/(first(i) - rate(i))
             share = min(max(share, 0.0_wp), 1.0_wp)
+            ! Stiffness that the turn would have given back, times the way there or back, the shorter one
             force = force + abs((self%structure%initial_stiffness(i) - springs%k(i))*change*rate(i))* &
                     min(abs(first(i))*share, abs(rate(i))*(1.0_wp - share))
          end do

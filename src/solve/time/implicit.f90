@@ -255,6 +255,7 @@ contains
          call first_end(state%springs, self%step%q1, self%dq, share, i, direction)
          self%step%q1 = self%step%q1 + share*self%dq
          self%step%moved = self%step%moved + share*self%dx
+         ! A spring that comes to the end of its line goes on to the next line.
          if (i > 0) then
             self%returns(i) = self%returns(i) + 1
             self%busiest = i
