@@ -80,6 +80,7 @@ contains
    !> Make room for a matrix.
    subroutine create(self, unknowns, width, stiffness)
       class(band_matrix), intent(out) :: self
+      !> Number of unknowns, and of diagonals below the main one
       integer, intent(in) :: unknowns, width
       !> Initial stiffness of the unknowns, all positive; without it nothing is scaled
       real(wp), intent(in), optional :: stiffness(:)
@@ -95,11 +96,12 @@ contains
       end if
       if (.not. present(stiffness)) return
       self%stiffness = stiffness
+      ! 2**(-floor(e/2)) with the binary exponent e; the zeros stand for rows beyond the end.
       self%scale = [scale(1.0_wp, -shifta(exponent(stiffness), 1)), (0.0_wp, i=2, rows)]
       self%scaled_stiffness = stiffness*self%scale(:unknowns)**2
    end subroutine create
 
-   !> Hold an unknown that a support keeps still: it couples with nothing.
+   !> Hold an unknown that a support keeps still: its row and column become zero but for the diagonal.
    pure subroutine hold(self, unknown, diagonal)
       class(band_matrix), intent(inout) :: self
       integer, intent(in) :: unknown
@@ -114,7 +116,8 @@ contains
       self%band(1, unknown) = diagonal
    end subroutine hold
 
-   !> Scale the matrix and factor it.
+   !> Scale the matrix, if it has a scale, and factor it: sets the factor, `negative`, `positive`, and whether
+   !> the factor serves for solutions.
    subroutine factor(self)
       class(band_matrix), intent(inout) :: self
 
@@ -136,6 +139,7 @@ contains
       end associate
    end subroutine factor
 
+   !> Multiply each element a(i, j) of a lower band by scale(i) scale(j).
    pure subroutine scale_band(n, rows, scale, band)
       integer, intent(in) :: n, rows
       real(wp), intent(in) :: scale(n + rows - 1)
@@ -159,7 +163,7 @@ contains
       integer :: j
 
       negative = 0
-      ! What the columns that are done take off the next three.
+      ! What the columns that are done take off the next three: r21 off their second row and first column.
       r11 = 0.0_wp
       r21 = 0.0_wp
       r31 = 0.0_wp
@@ -189,16 +193,19 @@ contains
       end do
    end subroutine factor_narrow
 
-   !> The same for any half-width, row by row and within the profile: a row of L begins where that of the
+   !> Factor L D L' for any half-width, row by row and within the profile: a row of L begins where that of the
    !> matrix does. Rows before the first one that has changed stay.
    pure subroutine factor_wide(n, width, band, factored, first, triangle, inverse, negative)
       integer, intent(in) :: n, width
+      !> Lower band: band(1 + i - j, j) = a(i, j)
       real(wp), intent(in) :: band(width + 1, n)
       !> Band that was factored before, replaced by this one; the first column of each row; the factor: 1/D
       !> and L, row by row, and 1/D alone. All follow from this band: a path that is resumed has the same bits
       real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), inverse(n)
       integer, intent(inout) :: first(n)
+      !> Number of pivots that are not positive
       integer, intent(out) :: negative
+      !> Elements of the present row of L, times their pivots
       real(wp) :: row(n), pivot
       integer :: changed, i, j, k
 
@@ -238,11 +245,12 @@ contains
       end do
    end subroutine factor_wide
 
-   !> Take from four elements of a row what the columns before them say.
+   !> Subtract from four elements of a row, behind m that are done, their products with the rows of L of these
+   !> four columns.
    pure subroutine reduce_four(m, row, a, b, c, d)
       integer, intent(in) :: m
       real(wp), intent(inout) :: row(m + 4)
-      !> Rows of L of the four
+      !> Rows of L of the four columns, from the same column on as `row`
       real(wp), intent(in) :: a(m), b(m + 1), c(m + 2), d(m + 3)
       real(wp) :: p, q, r, s
       integer :: k
@@ -264,7 +272,8 @@ contains
       row(m + 4) = row(m + 4) - (s + row(m + 1)*d(m + 1) + row(m + 2)*d(m + 2) + row(m + 3)*d(m + 3))
    end subroutine reduce_four
 
-   !> A small pivot in place of zero changes nothing but round-off.
+   !> Count a pivot that is not positive. In place of zero it becomes a small negative number, which changes
+   !> nothing but round-off.
    pure subroutine count_negative(pivot, negative)
       real(wp), intent(inout) :: pivot
       integer, intent(inout) :: negative
@@ -309,6 +318,7 @@ contains
    pure subroutine solve_wide(n, width, first, factor, inverse, b)
       integer, intent(in) :: n, width, first(n)
       real(wp), intent(in) :: factor(width + 1, n), inverse(n)
+      !> Right-hand side, replaced by the solution
       real(wp), intent(inout) :: b(n)
       integer :: i, k
 
@@ -323,11 +333,12 @@ contains
       end do
    end subroutine solve_wide
 
-   !> Without border: A x = b, with one right-hand side.
+   !> Solve A x = b, without border, with one right-hand side.
    subroutine solve_one(self, b, regular)
       class(band_matrix), intent(inout) :: self
       !> Right-hand side (size), replaced by the solution
       real(wp), intent(inout), contiguous :: b(:)
+      !> Whether the matrix has an inverse
       logical, intent(out) :: regular
 
       if (self%positive .and. self%width <= narrow .and. .not. allocated(self%scale)) then
@@ -336,6 +347,7 @@ contains
          regular = .true.
          return
       end if
+      ! With the scaled matrix S A S:  x = S (S A S)^-1 S b.
       call scale_rows(self, 1, b)
       call solve_scaled(self, 1, b, regular)
       call scale_rows(self, 1, b)
@@ -355,11 +367,12 @@ contains
       end if
    end subroutine substitute
 
-   !> The same with several.
+   !> Solve A x = b, without border, with several right-hand sides.
    subroutine solve_many(self, b, regular)
       class(band_matrix), intent(inout) :: self
-      !> (size, m)
+      !> Right-hand sides (size, m), replaced by the solutions
       real(wp), intent(inout), contiguous :: b(:, :)
+      !> Whether the matrix has an inverse
       logical, intent(out) :: regular
 
       call scale_rows(self, size(b, 2), b)
@@ -367,7 +380,7 @@ contains
       call scale_rows(self, size(b, 2), b)
    end subroutine solve_many
 
-   !> Give the border of the matrix that has been factored.
+   !> Give the matrix, which has been factored, its border, and find A^-1 a and, if needed, A^-1 c.
    subroutine set_border(self, column, row, regular)
       class(band_matrix), intent(inout) :: self
       !> a and c (size); without c it is a
@@ -393,7 +406,7 @@ contains
       regular = regular .and. abs(self%from_left) > 0.0_wp .and. abs(self%from_right) > 0.0_wp
    end subroutine set_border
 
-   !> With border.
+   !> Solve A x - a y = f, c x = g with the border of `set_border`.
    subroutine solve_bordered(self, f, g, x, y, regular)
       class(band_matrix), intent(inout) :: self
       !> Right-hand side (size), and that of the border
@@ -415,6 +428,7 @@ contains
          ! One step of refinement. Its size also shows whether the system has a solution.
          self%right(:) = self%right + self%border(:, 1)*y
          call subtract_product(self%size, size(self%band, 1), self%band, x, self%right)
+         ! `right` is now what x and y leave of the right-hand side.
          call eliminate(self, self%right, g - dot_product(self%border(:, 2), x), self%more, change, regular)
          regular = regular .and. maxval(abs(self%more)) <= no_answer*maxval(abs(x))
          if (.not. regular) return
@@ -424,8 +438,8 @@ contains
       call scale_rows(self, 1, x)
    end subroutine solve_bordered
 
-   !> Block elimination. Where the matrix is not positive definite it is the mixed one: once from the left,
-   !> which gives most of y, and once from the right for the rest.
+   !> Block elimination on the scaled system A x - a y = f, c x = g. Where the matrix is not positive definite
+   !> it is the mixed one: once from the left, which gives most of y, and once from the right for the rest.
    subroutine eliminate(self, f, g, x, y, regular)
       type(band_matrix), intent(inout) :: self
       real(wp), intent(in) :: f(:), g
@@ -447,9 +461,10 @@ contains
       y = y + more
    end subroutine eliminate
 
-   !> Solve with the scaled matrix.
+   !> Solve with the scaled matrix, by the factor where it serves, else by elimination with pivots.
    subroutine solve_scaled(self, m, b, regular)
       type(band_matrix), intent(inout) :: self
+      !> Number of right-hand sides, which the solutions replace
       integer, intent(in) :: m
       real(wp), intent(inout) :: b(self%size, m)
       logical, intent(out) :: regular
@@ -466,8 +481,9 @@ contains
 
    contains
 
-      !> A pivot that is round-off of zero takes its size. By a smaller one the solution goes so far along the
-      !> direction without stiffness that the digits of all others are lost.
+      !> Solve by elimination with pivots. A pivot below round-off is given the size of round-off: with a
+      !> smaller one the solution goes so far along the direction without stiffness that the digits of all
+      !> others are lost.
       subroutine solve_with_pivots()
          real(wp) :: right(self%size, m)
 
@@ -483,6 +499,7 @@ contains
          call solve()
       end subroutine solve_with_pivots
 
+      !> Solve with LAPACK, by the pivots of the last call if they are still those of the matrix.
       subroutine solve()
          call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot, &
                                  self%has_pivots)
@@ -509,7 +526,7 @@ contains
 
    end subroutine solve_scaled
 
-   !> Subtract a symmetric matrix times a column.
+   !> Subtract from g a symmetric matrix times the column x.
    pure subroutine subtract_product(n, rows, band, x, g)
       integer, intent(in) :: n, rows
       !> Lower band
@@ -529,6 +546,7 @@ contains
       end do
    end subroutine subtract_product
 
+   !> Multiply the rows of m columns by the scale, if there is one.
    pure subroutine scale_rows(self, m, b)
       type(band_matrix), intent(in) :: self
       integer, intent(in) :: m

@@ -19,6 +19,7 @@ module rbs_base_check
 
 contains
 
+   !> Whether a real number is not `unset`.
    elemental logical function real_is_given(x)
       real(wp), intent(in) :: x
 
@@ -26,15 +27,17 @@ contains
       real_is_given = transfer(x, 0_int64) /= transfer(unset, 0_int64)
    end function real_is_given
 
+   !> Whether a whole number is not `unset_integer`.
    elemental logical function integer_is_given(i)
       integer, intent(in) :: i
 
       integer_is_given = i /= unset_integer
    end function integer_is_given
 
-   !> The number must be given and finite.
+   !> Add a message unless a number is given, finite, and of a size that the arithmetic can bear.
    subroutine check_finite(x, name, unit, messages, ok)
       real(wp), intent(in) :: x
+      !> Owner and key, for the message: 'column: height'; unit, or blank
       character(len=*), intent(in) :: name, unit
       type(message_list), intent(inout) :: messages
       logical, intent(out), optional :: ok
@@ -58,10 +61,12 @@ contains
       if (present(ok)) ok = passed
    end subroutine check_finite
 
-   !> The word must be one of the valid ones; returns its number among them, 0 if it is not one of them.
+   !> Add a message unless a word is one of the valid ones.
    subroutine check_name(word, valid, name, messages, number)
+      !> The word, the valid ones, and owner and key for the message
       character(len=*), intent(in) :: word, valid(:), name
       type(message_list), intent(inout) :: messages
+      !> Place of the word among the valid ones, 0 if it is none of them
       integer, intent(out) :: number
 
       do number = 1, size(valid)
@@ -82,11 +87,12 @@ contains
       real(wp), intent(in) :: x, limit
       !> 'must be below', 'must not be below', 'must be above' or 'must not be above'
       character(len=*), intent(in) :: relation, limit_name
-      !> And remedy, with the signs before it
+      !> Reason and remedy, with the sign before them: ' (REASON)' or '; REMEDY'
       character(len=*), intent(in) :: reason
       type(message_list), intent(inout) :: messages
       logical :: below
 
+      ! Whether the number is below or, where the relation says so, above the limit.
       below = x < limit
       if (index(relation, 'above') > 0) below = x > limit
       if (below .eqv. index(relation, 'not') == 0) return
@@ -97,6 +103,7 @@ contains
    !> Refuse values that are not finite, or whose products would not be finite.
    subroutine check_values(values, name, error)
       real(wp), intent(in) :: values(:)
+      !> Owner of the values, for the message
       character(len=*), intent(in) :: name
       type(error_type), allocatable, intent(out) :: error
       character(len=64) :: reason

@@ -22,7 +22,8 @@ contains
                                          + s*((last - first)*(3.0_wp - 2.0_wp*s) - last_slope*(1.0_wp - s)))
    end function cubic_at
 
-   !> The shares at which the cubic has an extreme within the step, ascending; 1 for each that it has not.
+   !> The shares of the step at which the cubic has an extreme, ascending; 1 in place of an extreme that it
+   !> does not have within the step.
    pure function turns_of(c) result(s)
       real(wp), intent(in) :: c(4)
       real(wp) :: s(2), a, half, root, q
@@ -40,7 +41,7 @@ contains
       if (s(1) > s(2)) s = s([2, 1])
    end function turns_of
 
-   !> A quotient, 1 where it is not between 0 and 1.
+   !> The quotient part/whole where it is between 0 and 1, else 1.
    pure real(wp) function share_of(part, whole) result(share)
       real(wp), intent(in) :: part, whole
 
@@ -48,14 +49,14 @@ contains
       if (abs(part) < abs(whole) .and. part*whole > 0.0_wp) share = part/whole
    end function share_of
 
-   !> A bound of the cubic's size within the step.
+   !> A number that the cubic does not exceed in size within the step.
    pure real(wp) function bound_of(c) result(bound)
       real(wp), intent(in) :: c(4)
 
       bound = max(abs(c(1)), abs(c(2))) + beyond_ends*(abs(c(3)) + abs(c(4)))
    end function bound_of
 
-   !> The value that is largest in size, with its sign.
+   !> The value of the cubic within the step that is largest in size, with its sign.
    pure real(wp) function largest_of(c) result(largest)
       real(wp), intent(in) :: c(4)
       real(wp) :: value(4)
@@ -70,6 +71,7 @@ contains
       real(wp) :: node(4), low, high
       integer :: i
 
+      ! Between two of these shares the cubic only rises or only falls.
       node = [0.0_wp, turns_of(c), 1.0_wp]
       i = findloc(cubic_at(node, c(1), c(2), c(3), c(4)) >= value, .true., dim=1)
       s = merge(0.0_wp, 2.0_wp, i == 1)

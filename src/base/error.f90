@@ -40,6 +40,7 @@ contains
    !> Make an error.
    subroutine fatal_error(error, code, message)
       type(error_type), allocatable, intent(out) :: error
+      !> `analysis_failed` or `bad_input`
       integer, intent(in) :: code
       character(len=*), intent(in) :: message
 
@@ -48,7 +49,7 @@ contains
       error%message = message
    end subroutine fatal_error
 
-   !> Append one message.
+   !> Append one message; beyond `most_messages` it is only counted.
    subroutine add(self, message)
       class(message_list), intent(inout) :: self
       character(len=*), intent(in) :: message
@@ -61,9 +62,10 @@ contains
       end if
    end subroutine add
 
-   !> Append a message with where its text is, such as 'case.nml line 4:'; blank if there is none.
+   !> Append a message behind a location.
    subroutine add_at(self, where, message)
       class(message_list), intent(inout) :: self
+      !> Location, such as 'case.nml line 4:', or blank
       character(len=*), intent(in) :: where, message
 
       call self%add(trim(adjustl(trim(where)//' '//message)))
@@ -75,6 +77,7 @@ contains
       type(message_list), intent(in) :: other
 
       if (other%count == 0) return
+      ! The texts of all count as one message in `add`; the others are counted here.
       call self%add(other%text)
       self%count = self%count + other%count - 1
    end subroutine join

@@ -8,13 +8,15 @@ module rbs_base_inner_product
 
 contains
 
-   !> Four independent sums, so that one addition need not wait for the previous one.
+   !> Inner product of two arrays of length m: four independent sums, so that one addition need not wait for
+   !> the previous one.
    pure real(wp) function inner_product(m, a, b)
       integer, intent(in) :: m
       real(wp), intent(in) :: a(m), b(m)
       real(wp) :: part(4)
       integer :: i
 
+      ! Two products need no loop.
       if (m == 2) then
          inner_product = a(1)*b(1) + a(2)*b(2)
          return

@@ -101,6 +101,7 @@ contains
    !> The next visit collects keys; the record must be a new one, as its values are the defaults.
    subroutine collect(self, group)
       class(key_visitor), intent(inout) :: self
+      !> Name of the record in messages
       character(len=*), intent(in) :: group
 
       self%group = trim(group)
@@ -112,6 +113,7 @@ contains
    !> The next visit puts values, or a text, into the component of one key.
    subroutine put(self, name, number, text)
       class(key_visitor), intent(inout) :: self
+      !> Name of the key, and one of the two: its values, which must stay where they are, or its text
       character(len=*), intent(in) :: name
       real(wp), intent(in), contiguous, target, optional :: number(:)
       character(len=*), intent(in), optional :: text
@@ -125,6 +127,7 @@ contains
    !> The next visit sets the numbers of a record in their order.
    subroutine take(self, number)
       class(key_visitor), intent(inout) :: self
+      !> A value for each key, which must stay where it is; `unset`: the component stays as it is
       real(wp), intent(in), contiguous, target :: number(:)
 
       self%mode = taking
@@ -132,9 +135,10 @@ contains
       self%taken = 0
    end subroutine take
 
-   !> The next visit checks values.
+   !> The next visit checks values, and keeps a message for each that fails.
    subroutine start_check(self, group)
       class(key_visitor), intent(inout) :: self
+      !> Name of the record in messages
       character(len=*), intent(in) :: group
 
       self%group = trim(group)
@@ -143,7 +147,7 @@ contains
       self%messages = message_list()
    end subroutine start_check
 
-   !> Hand over the messages.
+   !> Append the messages of the visit to a list.
    subroutine end_check(self, messages)
       class(key_visitor), intent(inout) :: self
       type(message_list), intent(inout) :: messages
@@ -163,9 +167,10 @@ contains
       allocate (self%entry(self%count))
    end subroutine list
 
-   !> A number.
+   !> A key whose component is a real number.
    subroutine real_key(self, name, x, unit, bound, meaning, optional)
       class(key_visitor), intent(inout) :: self
+      !> Name of the key; component, set when the visit puts or takes values
       character(len=*), intent(in) :: name
       real(wp), intent(inout) :: x
       character(len=*), intent(in) :: unit, meaning
@@ -178,7 +183,7 @@ contains
                                      optional=is_true(optional)), x)
    end subroutine real_key
 
-   !> A whole number.
+   !> A key whose component is a whole number: handled as a real one, which is rounded at the end.
    subroutine integer_key(self, name, i, unit, bound, meaning, optional)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -197,6 +202,7 @@ contains
       if (is_given(x)) i = nint(x)
    end subroutine integer_key
 
+   !> A key whose component is a logical: handled as the number 0 or 1.
    subroutine logical_key(self, name, l, meaning)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -211,15 +217,17 @@ contains
       l = abs(x) > 0.0_wp
    end subroutine logical_key
 
-   !> A word by its number among the choices.
+   !> A key whose component is the place of a word among the choices.
    subroutine choice_key(self, name, choice, meaning, choices)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
+      !> Place of the word; the choices are separated by blanks
       integer, intent(inout) :: choice
       character(len=*), intent(in) :: meaning, choices
       real(wp) :: x
 
       x = choice
+      ! A check is of the place, not of the bounds of a number.
       if (self%mode == checking .or. .not. is_done(self, name, x, any_number)) then
          call one_number(self, key_type(name=name, kind=word_kind, default=x, choices=choices, &
                                         meaning=meaning), x)
@@ -242,7 +250,8 @@ contains
       end do
    end subroutine parameters
 
-   !> Put or take a number, or check one that is within its bounds, as most visits do: they need no key.
+   !> Do what most visits do without making a key: put or take the number, or pass a check if it is within its
+   !> bounds. False if the visit needs the key, to collect, to list or to report (`one_number`).
    logical function is_done(self, name, x, bound)
       type(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -260,7 +269,7 @@ contains
       end if
    end function is_done
 
-   !> Whether a key is the one that is put.
+   !> Whether a key is the one that the visit puts.
    pure logical function is_wanted(self, name)
       type(key_visitor), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -270,7 +279,8 @@ contains
       if (is_wanted) is_wanted = name == self%wanted
    end function is_wanted
 
-   !> A number that is collected, checked or listed; whole numbers and words too.
+   !> What `is_done` has left of the key of one number: collect it, report it in a check, or list it. The
+   !> number may stand for a whole number, a logical or the place of a word.
    subroutine one_number(self, key, x)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -289,11 +299,11 @@ contains
          end if
       case (listing)
          if (is_given(x)) call list_numbers(self, key%name, [x])
-      case default                                  ! no other mode
+      case default                                  ! putting and taking are done in `is_done`
       end select
    end subroutine one_number
 
-   !> A list of numbers; not allocated: not given.
+   !> A key whose component is a list of numbers; not allocated: not given.
    subroutine real_list_key(self, name, x, unit, bound, meaning, most, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -302,6 +312,7 @@ contains
       type(bound_type), intent(in) :: bound
       !> Largest number of values
       integer, intent(in) :: most
+      !> Whether the list must be given
       logical, intent(in), optional :: required
 
       if (self%mode == putting) then
@@ -312,7 +323,7 @@ contains
                                       most=most, meaning=meaning), x)
    end subroutine real_list_key
 
-   !> Whole numbers.
+   !> A key whose component is a list of whole numbers; not allocated: not given.
    subroutine integer_list_key(self, name, i, unit, bound, meaning, most, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -332,7 +343,7 @@ contains
                                       optional=.not. is_true(required), most=most, meaning=meaning), x)
    end subroutine integer_list_key
 
-   !> Numbers that are collected, listed or checked.
+   !> A list of numbers when the visit does not put values: collect its key, list it, or check each number.
    subroutine number_list(self, key, x)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -357,17 +368,20 @@ contains
             if (size(x) > 1) one%name = trim(key%name)//'('//to_text(i)//')'
             call check_number(x(i), self%group, one, self%messages, self%sound)
          end do
-      case default                                  ! no other mode
+      case default                                  ! putting is done by the caller; lists are not taken
       end select
    end subroutine number_list
 
-   !> A word or a text of limited length. Without choices it is free; an empty text means: not given.
+   !> A key whose component is a word or a text of limited length. Without choices it is free; an empty text
+   !> means: not given.
    subroutine text_key(self, name, text, meaning, choices, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
       character(len=*), intent(inout) :: text
       character(len=*), intent(in) :: meaning
+      !> Words that are allowed, separated by blanks
       character(len=*), intent(in), optional :: choices
+      !> Whether the text must be given
       logical, intent(in), optional :: required
       type(key_type) :: key
       character(len=:), allocatable :: value
@@ -391,7 +405,7 @@ contains
       text = value
    end subroutine text_key
 
-   !> A text of any length; not allocated: not given.
+   !> A key whose component is a text of any length; not allocated: not given.
    subroutine long_text_key(self, name, text, meaning, required)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -403,7 +417,7 @@ contains
                                    meaning=meaning), text)
    end subroutine long_text_key
 
-   !> A text or a word in the mode of the visit.
+   !> Collect, put, check or list a text or a word, whichever the visit does.
    subroutine one_text(self, key, text)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -433,11 +447,11 @@ contains
          if (text == self%keys(find_key(self%keys(:self%count), key%name))%default_text) return
          self%listed = self%listed + 1
          self%entry(self%listed) = entry_type(key%name, text_kind, text=text)
-      case default                                  ! no other mode
+      case default                                  ! taking is of numbers alone
       end select
    end subroutine one_text
 
-   !> A value that must be given is not.
+   !> Report that a value is missing which must be given.
    subroutine missing(self, key)
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
@@ -449,6 +463,7 @@ contains
       call self%messages%add(self%group//': '//trim(key%name)//' is missing; '//trim(remedy))
    end subroutine missing
 
+   !> Whether an optional argument is there and true.
    pure logical function is_true(choice)
       logical, intent(in), optional :: choice
 
@@ -471,7 +486,7 @@ contains
       self%keys(self%count) = key
    end subroutine append
 
-   !> List numbers, unless they are the default.
+   !> List the values of a key, unless they are its default; the keys have been collected before.
    subroutine list_numbers(self, name, number)
       type(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name

@@ -70,7 +70,7 @@ module rbs_base_keys
 
 contains
 
-   !> A message if a number is missing where it must be given, not finite, or outside its bounds.
+   !> Add a message if a number is missing where it must be given, not finite, or outside its bounds.
    subroutine check_number(x, name, key, messages, ok)
       real(wp), intent(in) :: x
       !> The owner of the number: 'shear spring of joint 2'
@@ -129,7 +129,7 @@ contains
 
    end subroutine check_number
 
-   !> Whether a number has a meaning and is within its bounds, as most are.
+   !> Whether a number is finite, has a size that the arithmetic can bear, and is within its bounds.
    elemental logical function is_inside(x, bound)
       real(wp), intent(in) :: x
       type(bound_type), intent(in) :: bound
@@ -142,6 +142,7 @@ contains
       if (is_inside) is_inside = is_within(x, bound)
    end function is_inside
 
+   !> Whether a finite number is within its bounds.
    elemental logical function is_within(x, bound)
       real(wp), intent(in) :: x
       type(bound_type), intent(in) :: bound
@@ -193,7 +194,7 @@ contains
       number = 0
    end function choice_number
 
-   !> The choice of a number; blank beyond the last one.
+   !> The word at a place among the choices of a key; blank beyond the last one.
    pure character(len=choice_length) function choice_name(key, number) result(name)
       type(key_type), intent(in) :: key
       integer, intent(in) :: number

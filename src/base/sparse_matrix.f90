@@ -38,10 +38,10 @@ contains
       self%start(size(band, 2) + 1) = at + 1
    end function sparse_of
 
-   !> Subtract the matrix times a column.
+   !> Subtract from g the matrix times the column x.
    pure subroutine subtract_product(self, x, g)
       class(sparse_matrix), intent(in) :: self
-      !> (size)
+      !> Columns (size)
       real(wp), intent(in), contiguous :: x(:)
       real(wp), intent(inout), contiguous :: g(:)
       real(wp) :: product
@@ -61,6 +61,7 @@ contains
    pure subroutine add_to(self, factor, band)
       class(sparse_matrix), intent(in) :: self
       real(wp), intent(in) :: factor
+      !> band(1 + i - j, j) = a(i, j) for i >= j (half_width + 1, size)
       real(wp), intent(inout), contiguous :: band(:, :)
       integer :: j, k
 

@@ -53,7 +53,8 @@ contains
       self%at = 0
    end subroutine restore
 
-   !> Go on by n numbers; `from` is the place before the first of them.
+   !> Go on by n numbers; `from` is the place before the first of them. A stream that saves gets longer; one
+   !> that restores is broken where it has not as many.
    pure subroutine step(self, n, from)
       class(stream_type), intent(inout) :: self
       integer, intent(in) :: n
@@ -74,6 +75,7 @@ contains
       call move_alloc(longer, self%value)
    end subroutine step
 
+   !> Save a number, or restore it.
    pure subroutine item_real(self, x)
       class(stream_type), intent(inout) :: self
       real(wp), intent(inout) :: x
@@ -87,7 +89,7 @@ contains
       end if
    end subroutine item_real
 
-   !> Up to eight numbers, one after the other.
+   !> Save or restore two to eight numbers, one after the other.
    pure subroutine items(self, x_1, x_2, x_3, x_4, x_5, x_6, x_7, x_8)
       class(stream_type), intent(inout) :: self
       real(wp), intent(inout) :: x_1, x_2
@@ -121,6 +123,7 @@ contains
       end if
    end subroutine item_reals
 
+   !> Save or restore a table of numbers, column by column.
    pure subroutine item_table(self, x)
       class(stream_type), intent(inout) :: self
       real(wp), intent(inout), contiguous :: x(:, :)
@@ -131,6 +134,7 @@ contains
       end do
    end subroutine item_table
 
+   !> Save or restore a whole number, as a real one; the stream is broken if it is too large for an integer.
    pure subroutine item_integer(self, i)
       class(stream_type), intent(inout) :: self
       integer, intent(inout) :: i
@@ -143,7 +147,8 @@ contains
       if (.not. self%broken) i = nint(x)
    end subroutine item_integer
 
-   !> Serial numbers stay far below 2**53, up to which they are exact.
+   !> Save or restore a long whole number, as a real one: these are serial numbers, far below 2**53, up to
+   !> which they are exact.
    pure subroutine item_long(self, i)
       class(stream_type), intent(inout) :: self
       integer(int64), intent(inout) :: i
@@ -156,6 +161,7 @@ contains
       if (.not. self%broken) i = nint(x, int64)
    end subroutine item_long
 
+   !> Save or restore a logical, as 0 or 1.
    pure subroutine item_logical(self, is)
       class(stream_type), intent(inout) :: self
       logical, intent(inout) :: is
@@ -166,6 +172,7 @@ contains
       if (self%restoring .and. .not. self%broken) is = x > 0.5_wp
    end subroutine item_logical
 
+   !> Save or restore logicals.
    pure subroutine item_logicals(self, are)
       class(stream_type), intent(inout) :: self
       logical, intent(inout) :: are(:)
@@ -176,7 +183,8 @@ contains
       end do
    end subroutine item_logicals
 
-   !> The length of a list that has room for `most`.
+   !> Save or restore the length of a list that may have up to `most` elements; another length breaks the
+   !> stream.
    pure subroutine item_count(self, count, most)
       class(stream_type), intent(inout) :: self
       integer, intent(inout) :: count

@@ -40,6 +40,7 @@ contains
       text = buffer(:len(text))
    end function real_to_text
 
+   !> Length of the text of a real number.
    pure integer function real_length(x)
       real(wp), intent(in) :: x
       character(len=longest) :: buffer
@@ -63,6 +64,7 @@ contains
       end do
    end function integer_to_text
 
+   !> Length of the text of a whole number, with its sign.
    pure integer function integer_length(i)
       integer, intent(in) :: i
       integer :: left
@@ -123,10 +125,11 @@ contains
       if (x < 0.0_wp) text = '-'//text(:longest - 1)
    end function exact_text
 
-   !> Significant digits of a number without trailing zeros, and the power of ten of the first.
+   !> Significant digits of the size of a number, without trailing zeros, and the power of ten of the first.
    pure subroutine find_digits(x, count, digits, power)
       !> Finite and not zero
       real(wp), intent(in) :: x
+      !> Digits to which the number is rounded
       integer, intent(in) :: count
       character(len=longest), intent(out) :: digits
       integer, intent(out) :: power
@@ -142,7 +145,7 @@ contains
       digits = digits(:verify(trim(digits), '0', back=.true.))
    end subroutine find_digits
 
-   !> A decimal number from its digits and the power of ten of the first.
+   !> A decimal number from its significant digits and the power of ten of the first: 0.016 from 16 and -2.
    pure character(len=longest) function with_point(digits, power) result(text)
       character(len=*), intent(in) :: digits
       integer, intent(in) :: power
@@ -188,7 +191,7 @@ contains
    !> Whether there is a further line in a text; its first and last character, from those of the line before.
    logical function next_line(text, first, last)
       character(len=*), intent(in) :: text
-      !> Before the first line 0 and -1
+      !> First and last character of the line before, replaced; before the first line any number and -1
       integer, intent(inout) :: first, last
 
       first = last + 2
@@ -222,6 +225,7 @@ contains
       if (len(text) > 0) text = "; did you mean '"//trim(names(nearest_name(word, names)))//"'?"
    end function suggestion
 
+   !> Length of the text of `suggestion`, 0 where it is empty.
    pure integer function suggestion_length(word, names) result(length)
       character(len=*), intent(in) :: word, names(:)
       integer :: number
@@ -231,7 +235,8 @@ contains
       if (number > 0) length = len_trim(names(number)) + len("; did you mean ''?")
    end function suggestion_length
 
-   !> Number of the name that is nearest to a word; 0 if a third of the word or more is other.
+   !> Place of the name that is nearest to a word by edit distance; 0 if no distance is at most a third of the
+   !> length of the word, rounded.
    pure integer function nearest_name(word, names) result(number)
       character(len=*), intent(in) :: word, names(:)
       integer :: i, distance, least
@@ -250,6 +255,7 @@ contains
    !> Levenshtein distance: the least number of characters to insert, remove or change.
    pure integer function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
+      !> Distances of the first i characters of a from the first j of b
       integer :: row(0:len(b)), i, j, diagonal, above
 
       row = [(j, j=0, len(b))]

@@ -38,7 +38,7 @@ module rbs_base_units
 
 contains
 
-   !> The unit of a name; the first one, that of SI, if the name is blank or another.
+   !> The unit of a name; the first one, that of SI, if the name is blank or not in the list.
    pure type(unit_type) function unit_named(units, name) result(unit)
       type(unit_type), intent(in) :: units(:)
       character(len=*), intent(in) :: name
@@ -46,7 +46,7 @@ contains
       unit = units(max(1, findloc(units%name == name, .true., dim=1)))
    end function unit_named
 
-   !> A value in SI.
+   !> A value in a unit, converted to SI.
    elemental real(wp) function to_si(value, unit)
       real(wp), intent(in) :: value
       type(unit_type), intent(in) :: unit
@@ -99,7 +99,8 @@ contains
       out_of_si = converted(self, value, unit, -1)
    end function out_of_si
 
-   !> A value times the sizes of the units in its unit, each with its power: that of m in 'kg m2' is 2.
+   !> A value converted by each unit of force, length and mass in its unit, with its power: that of m in
+   !> 'kg m2' is 2.
    elemental real(wp) function converted(self, value, unit, direction)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
@@ -158,6 +159,7 @@ contains
       logical :: found
 
       name = ''
+      ! Accelerations and work have units of their own.
       if (unit == 'm/s2' .or. unit == 'J') name = unit
       if (name /= '') return
       do i = 1, len_trim(unit)
@@ -166,6 +168,7 @@ contains
             name = trim(name)//one%name
             if (unit(i:i) /= 'k') cycle
          else if (i > 1 .and. unit(i:i) == 'g') then
+            ! The g of kg: k has named the unit of mass.
             cycle
          else
             name = trim(name)//unit(i:i)

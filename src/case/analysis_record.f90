@@ -142,6 +142,7 @@ contains
 
    contains
 
+      !> Refuse a setting that is given and that the method does not use.
       subroutine refuse(key, given)
          character(len=*), intent(in) :: key
          logical, intent(in) :: given

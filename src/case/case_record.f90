@@ -57,7 +57,8 @@ module rbs_case_case_record
 
 contains
 
-   !> Make room for the values of a group.
+   !> Make room for the values of a group: one more loading, frame part or drawing. A group of a drawing
+   !> belongs to the last drawing.
    subroutine open_group(self, group)
       class(case_record), intent(inout) :: self
       character(len=*), intent(in) :: group
@@ -75,6 +76,7 @@ contains
       n = 0
       if (allocated(self%drawing)) n = size(self%drawing)
       is_new = n == 0
+      ! Its groups may have come before &drawing itself.
       if (group == 'drawing' .and. n > 0) is_new = self%drawing(n)%stated
       if (is_new) then
          allocate (longer(n + 1))
@@ -84,12 +86,12 @@ contains
       call self%drawing(size(self%drawing))%open_group(group)
    end subroutine open_group
 
-   !> Present the keys of a group; those of a drawing are of the last one.
+   !> Present the keys of a group; a group of a drawing is that of the last drawing.
    subroutine visit_group(self, group, v, number)
       class(case_record), intent(inout) :: self
       character(len=*), intent(in) :: group
       type(key_visitor), intent(inout) :: v
-      !> Which of several; without it the last
+      !> Number among the groups of this name; without it the last
       integer, intent(in), optional :: number
       integer :: i
 
@@ -151,6 +153,7 @@ contains
    !> Set values that follow from other input: sources and units of the loadings, the method.
    subroutine settle(self)
       class(case_record), intent(inout) :: self
+      !> Whether the ground moves in a loading; whether a force or axial load has times
       logical :: moving, timed
       integer :: i
 
@@ -174,6 +177,7 @@ contains
          end associate
       end do
       if (self%analysis%method /= '') return
+      ! With times alone the method stays empty: the user must choose (`validate`).
       self%analysis%named = .false.
       if (moving) then
          self%analysis%method = 'auto'
@@ -245,6 +249,7 @@ contains
          end if
          call self%parts%find(with_kinds, messages)
          call check_sections()
+         ! Python will make the members, so these parts are not those of the frame.
          if (self%is_drawn()) deallocate (self%parts)
          call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
@@ -253,7 +258,7 @@ contains
          end if
       end subroutine validate_frame
 
-      !> Drawings that kinds of members name.
+      !> Check that the drawings that kinds of members name are there, and keys that need one.
       subroutine check_sections()
          character(len=name_length), allocatable :: names(:)
          integer :: i
@@ -338,8 +343,8 @@ contains
       end if
    end function height
 
-   !> Whether Python makes its springs of drawings: those of a column but for those beneath its footing, those
-   !> of the members of a frame; or the loads of a frame.
+   !> Whether something is still to be made by Python: from drawings the springs of a column (but for those
+   !> beneath its footing) or of the members of a frame, or the loads of a frame.
    pure logical function is_drawn(self)
       class(case_record), intent(in) :: self
       integer :: i
@@ -365,6 +370,7 @@ contains
 
    contains
 
+      !> Whether a column has no springs of a kind but, on a footing, the one beneath it.
       pure logical function only_beneath(springs)
          type(spring_record), intent(in), allocatable :: springs(:)
 
@@ -373,7 +379,7 @@ contains
       end function only_beneath
    end function is_drawn
 
-   !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
+   !> Refuse input that a static path cannot take: members of a frame that are lost at a time.
    subroutine check_static(self, messages)
       class(case_record), intent(in) :: self
       type(message_list), intent(inout) :: messages

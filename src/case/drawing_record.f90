@@ -160,7 +160,7 @@ contains
       class(drawing_record), intent(inout) :: self
       character(len=*), intent(in) :: group
       type(key_visitor), intent(inout) :: v
-      !> Which of several; without it the last
+      !> Number among the groups of this name; without it the last
       integer, intent(in), optional :: number
       integer :: i
 
@@ -196,6 +196,7 @@ contains
       end select
    end subroutine visit_group
 
+   !> The keys of the drawing itself.
    subroutine visit_drawing(self, v)
       class(drawing_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -215,6 +216,7 @@ contains
       call v%key('round_core', self%round_core, 'the ties stand for a spiral around a round core')
    end subroutine visit_drawing
 
+   !> The keys of a layout of bars.
    subroutine visit_layout(self, v)
       class(layout_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -230,6 +232,7 @@ contains
                  'number of the steel of the bars between the corners, if it differs', optional=.true.)
    end subroutine visit_layout
 
+   !> The keys of a row of bars.
    subroutine visit_row(self, v)
       class(row_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -243,6 +246,7 @@ contains
       call v%key('steel', self%steel, '', any_number, 'number of their steel; without it the first', &
                  optional=.true.)
    end subroutine visit_row
+   !> The keys of a lap.
    subroutine visit_lap(self, v)
       class(lap_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -252,6 +256,7 @@ contains
                  'of the bars; without it that of ACI 318-19', optional=.true.)
    end subroutine visit_lap
 
+   !> The keys of a mesh of a wall.
    subroutine visit_curtain(self, v)
       class(curtain_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -263,6 +268,7 @@ contains
       call v%key('steel', self%steel, '', any_number, 'number of their steel')
    end subroutine visit_curtain
 
+   !> The keys of a parameter of the model.
    subroutine visit_parameter(self, v)
       class(parameter_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -283,7 +289,7 @@ contains
    !> Add a message for every value that is refused.
    subroutine validate(self, of_frame, drawn, messages)
       class(drawing_record), intent(inout) :: self
-      !> Whether springs are still to be made of it
+      !> Whether it is of members of a frame; whether springs are still to be made of it
       logical, intent(in) :: of_frame, drawn
       type(message_list), intent(inout) :: messages
       type(message_list) :: own
@@ -296,7 +302,7 @@ contains
          call messages%join(own)
          return
       end if
-      ! Of several drawings that which is meant
+      ! Each message begins with the name of the drawing, as there may be several.
       rest = own%text
       do
          line = index(rest//new_line('a'), new_line('a'))
@@ -306,9 +312,10 @@ contains
       end do
    end subroutine validate
 
-   !> Check the groups of a drawing, by what it is a drawing of.
+   !> Check the groups of a drawing of a column or of members of a frame.
    subroutine check_values(self, of_frame, drawn, messages)
       class(drawing_record), intent(inout) :: self
+      !> Whether it is of members of a frame; whether springs are still to be made of it
       logical, intent(in) :: of_frame, drawn
       type(message_list), intent(inout) :: messages
       integer :: i
@@ -366,7 +373,9 @@ contains
 
    contains
 
+      !> Add a message unless a value is given.
       subroutine require(name, given, unit)
+         !> Key; end of the message: ' in m'
          character(len=*), intent(in) :: name, unit
          logical, intent(in) :: given
 
@@ -374,9 +383,10 @@ contains
       end subroutine require
    end subroutine check_values
 
-   !> The values of a layout, and its steels.
+   !> Check the values of a layout, if there is one, and that its steels are among those of the section.
    subroutine check_layout(section, name, layout, messages)
       type(section_record), intent(in) :: section
+      !> Name of the group
       character(len=*), intent(in) :: name
       type(layout_record), allocatable, intent(inout) :: layout
       type(message_list), intent(inout) :: messages

@@ -74,12 +74,14 @@ contains
    !> Open a group, after a check of its name and of how often it appears.
    subroutine open(self, group, where, line, messages, ok)
       class(group_reader), intent(inout) :: self
+      !> Name of the group, without &
       character(len=*), intent(in) :: group
-      !> For messages, may be blank
+      !> Location for messages, 'case.nml line 4:', or blank
       character(len=*), intent(in) :: where
-      !> Of the file, 0 without one
+      !> Line of the file in which the group begins, 0 without a file
       integer, intent(in) :: line
       type(message_list), intent(inout) :: messages
+      !> Whether the group has been opened, without a message
       logical, intent(out) :: ok
       integer :: i, group_index, known
 
@@ -118,7 +120,7 @@ contains
       end if
    end subroutine open
 
-   !> The list of keys of the open group.
+   !> Collect the list of keys of the open group, with those of the rule of a spring.
    subroutine collect_keys(self)
       class(group_reader), intent(inout) :: self
 
@@ -137,6 +139,7 @@ contains
          call self%entries%entry(self%entries%count)%visit(self%visitor, self%rule_keys)
          return
       end if
+      ! Only of a section these names are requests; &shear of a case is a spring.
       select case (merge(self%group, repeat(' ', len(self%group)), self%of_section))
       case ('diagram')
          call self%diagram%visit(self%visitor)
@@ -157,7 +160,7 @@ contains
    subroutine find(self, name, where, key_index, messages)
       class(group_reader), intent(inout) :: self
       character(len=*), intent(in) :: name
-      !> For messages, may be blank
+      !> Location for messages, 'case.nml line 4:', or blank
       character(len=*), intent(in) :: where
       integer, intent(out) :: key_index
       type(message_list), intent(inout) :: messages
@@ -189,8 +192,9 @@ contains
    !> Set a key by its index to numbers, whole numbers, or 0 and 1.
    subroutine put_numbers(self, key_index, number)
       class(group_reader), intent(inout) :: self
-      !> From `find`
+      !> Index that `find` has returned
       integer, intent(in) :: key_index
+      !> Values of the key in `units`, one or, for a list, several
       real(wp), intent(in), contiguous, target :: number(:)
       real(wp), allocatable, target :: si(:)
       integer :: parameter
@@ -200,6 +204,7 @@ contains
       parameter = key_index - size(self%keys)
       if (self%is_spring) parameter = parameter + size(self%rule_keys)
       if (self%units%is_si()) then
+         ! Without conversion a parameter is stored without a visit, which would take time.
          if (parameter > 0) then
             self%entries%entry(self%entries%count)%spring%value(parameter) = number(1)
             return
@@ -215,6 +220,7 @@ contains
    !> Set all parameters of the rule of the open spring, in the order of its keys and in SI.
    subroutine put_parameters(self, number)
       class(group_reader), intent(inout) :: self
+      !> As many values as the rule has keys; `unset`: not given
       real(wp), intent(in) :: number(:)
 
       self%entries%entry(self%entries%count)%spring%value(:size(number)) = number
@@ -223,8 +229,9 @@ contains
    !> Set a key by its index to a word or a text.
    subroutine put_text(self, key_index, given, messages)
       class(group_reader), intent(inout) :: self
+      !> Index that `find` has returned
       integer, intent(in) :: key_index
-      !> A word may be in upper or lower case
+      !> The text without quotes; a word may be in upper or lower case
       character(len=*), intent(in) :: given
       type(message_list), intent(inout) :: messages
       type(key_type) :: key
@@ -242,6 +249,7 @@ contains
             i = i + 1
          end do
       end if
+      ! A rule brings keys of its own, so the list of keys is collected anew.
       if (self%is_spring .and. key%name == 'rule') then
          call self%entries%entry(self%entries%count)%set_rule(lower(text))
          self%collected = .false.
@@ -263,6 +271,7 @@ contains
       call self%visit_open()
       call self%visitor%end_check(messages)
       if (self%group == 'units') self%units = self%case%units%system()
+      ! A shape brings keys too.
       if (key%name /= 'shape') return
       self%collected = .false.
       if (all(shape_names /= text)) then
@@ -288,6 +297,7 @@ contains
          call give_springs(self%entries, self%case%frame, messages)
          return
       end if
+      ! The last three groups of a section are the requests.
       do i = size(section_groups) - 2, size(section_groups)
          if (.not. self%seen(i)) cycle
          self%group = section_groups(i)
@@ -300,6 +310,7 @@ contains
    !> The SI unit of a parameter of a spring, which depends on the kind of the spring; other units are
    !> returned unchanged.
    elemental character(len=16) function unit_in_group(unit, group) result(si)
+      !> One of the dimensions `stiffness`, `force`, `deformation`, or a unit; group of the spring
       character(len=*), intent(in) :: unit, group
 
       si = unit

@@ -105,7 +105,7 @@ contains
       end select
    end function count_of
 
-   !> Whether a case asks for more than its rows.
+   !> Whether a case asks for a target displacement or an assessment by a code.
    pure logical function asked(self)
       class(judgement_record), intent(in) :: self
 
@@ -117,7 +117,7 @@ contains
       class(judgement_record), intent(inout) :: self
       character(len=*), intent(in) :: group
       type(key_visitor), intent(inout) :: v
-      !> Which of several; without it the last
+      !> Number among the groups of this name; without it the last
       integer, intent(in), optional :: number
       integer :: i
 
@@ -137,6 +137,7 @@ contains
       end select
    end subroutine visit_group
 
+   !> The keys of the target displacement.
    subroutine visit_target(self, v)
       class(target_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -161,6 +162,7 @@ contains
       call v%word('site_class', self%site_class, 'ASCE 41: class of the site, D without it')
    end subroutine visit_target
 
+   !> The keys of the records that run beside the target.
    subroutine visit_records(self, v)
       class(records_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -170,6 +172,7 @@ contains
       call v%word('units', self%units, 'unit of records that name none: g, m/s2, cm/s2')
    end subroutine visit_records
 
+   !> The keys of an assessment by a code.
    subroutine visit_assess(self, v)
       class(assess_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -184,6 +187,7 @@ contains
                  'members without seismic detailing or with smooth bars', optional=.true.)
    end subroutine visit_assess
 
+   !> The keys of limits of one member.
    subroutine visit_limit(self, v)
       class(limit_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v

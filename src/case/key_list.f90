@@ -22,10 +22,11 @@ module rbs_case_key_list
 
 contains
 
-   !> The keys of a group without the parameters of a rule, or the sizes of a shape.
+   !> The keys of a group, without the parameters of a rule; of the name of a shape the keys of its sizes.
    subroutine group_keys(group, of_section, keys)
+      !> Name of a group or of a shape
       character(len=*), intent(in) :: group
-      !> Whether it is a group of a section, see `group_reader`
+      !> Whether it is one of `section_groups`, else of `group_names`
       logical, intent(in) :: of_section
       type(key_type), allocatable, intent(out) :: keys(:)
       type(group_reader) :: reader
@@ -47,8 +48,8 @@ contains
       end if
    end subroutine group_keys
 
-   !> {"groups": {name: [key, ...]}, "rules": {name: {"places": [...], "keys": [key, ...]}},
-   !>  "section": {name: [key, ...]}}; the last are requests about a section, and sizes of shapes.
+   !> All keys as JSON: {"groups": {name: [key, ...]}, "rules": {name: {"places": "...", "keys": [key, ...]}},
+   !> "section": {name: [key, ...]}}; the last are requests about a section, and sizes of shapes.
    subroutine keys_as_json(buffer)
       type(text_buffer), intent(inout) :: buffer
       character(len=16), parameter :: section_parts(*) = [character(len=16) :: section_groups, shape_names]
@@ -75,7 +76,7 @@ contains
 
    contains
 
-      !> A name and its list of keys, each on a line.
+      !> A name and its list of keys, each on a line, between two texts; `i` is that of the loop outside.
       subroutine append_list(name, before, keys, after)
          character(len=*), intent(in) :: name, before, after
          type(key_type), intent(in) :: keys(:)
@@ -147,7 +148,8 @@ contains
       end select
    end function default_of
 
-   !> Groups and rules, a line for each key: name, kind, unit, bounds, default, meaning.
+   !> Groups and rules, a line for each key: name, kind, unit, bounds, default, meaning; an error if the name
+   !> is neither a group nor a rule.
    subroutine keys_as_table(given, buffer, error)
       !> A group or a rule, in upper or lower case; empty for all of them
       character(len=*), intent(in) :: given

@@ -97,6 +97,7 @@ contains
    !> Whether a method uses a setting of the analysis.
    elemental logical function takes(method, key)
       type(method_type), intent(in) :: method
+      !> 'dt', 'duration', 'events', 'tolerance', 'rho_infinity' or 'allow_unstable'
       character(len=*), intent(in) :: key
 
       select case (key)
@@ -126,6 +127,7 @@ contains
       left = count(wanted)
       do i = 1, size(methods)
          if (.not. wanted(i)) cycle
+         ! How many names follow this one.
          left = left - 1
          text = text//"'"//trim(methods(i)%name)//"'"
          if (left == 1) text = text//' or '

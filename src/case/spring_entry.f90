@@ -57,8 +57,9 @@ contains
    !> Append an empty entry.
    subroutine add(self, group, where, line)
       class(entry_list), intent(inout) :: self
+      !> One of `spring_groups`; location for messages, 'case.nml line 4:', or blank
       character(len=*), intent(in) :: group, where
-      !> Of the file, 0 without one
+      !> Line of the file in which the group begins, 0 without a file
       integer, intent(in) :: line
       type(spring_entry), allocatable :: longer(:)
 
@@ -109,7 +110,7 @@ contains
       end if
    end subroutine visit
 
-   !> Set the rule; a name that is too long keeps a mark of that, so that it is not taken for a shorter one.
+   !> Set the rule. A name that is too long ends with the mark ~, so that its start is not taken for a rule.
    subroutine set_rule(self, name)
       class(spring_entry), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -153,7 +154,7 @@ contains
             n = n + 1
             spring(n) = entry%frame_spring
             if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle
-            ! The layers of its kind of members and its positions
+            ! The layers with the same kind of members and positions; of several the last.
             do j = list%count, 1, -1
                if (list%entry(j)%group == 'layers' .and. are_of(list%entry(j), entry)) exit
             end do
@@ -163,7 +164,7 @@ contains
       call move_alloc(spring, frame%spring)
    end subroutine give_springs
 
-   !> Whether layers belong to a spring of a frame.
+   !> Whether layers belong to a spring of a frame: both have the same kind of members and positions.
    pure logical function are_of(layers, spring)
       type(spring_entry), intent(in) :: layers, spring
 
@@ -173,11 +174,11 @@ contains
       if (are_of) are_of = .not. any(abs(layers%position - spring%position) > 0.0_wp)
    end function are_of
 
-   !> Give the springs to the joints of a column; one that is drawn may have those beneath its footing alone.
+   !> Give the springs to the joints of a column. A drawn column may have those beneath its footing alone.
    subroutine place_springs(list, column, drawn, messages)
       type(entry_list), intent(in) :: list
       type(column_record), intent(inout) :: column
-      !> Whether its section is there
+      !> Whether the case has a drawing, of which the other springs are made
       logical, intent(in) :: drawn
       type(message_list), intent(inout) :: messages
       !> Numbers of the lowest and the uppermost joint, and the same for messages
@@ -208,7 +209,7 @@ contains
       !> Find the entry of a group for each joint: the one that names it, or the one without joints.
       subroutine assign(group, of_joint, rest)
          character(len=*), intent(in) :: group
-         !> Entries that name the joints, 0: none; the entry for all others, 0: none
+         !> Of each joint the entry that names it, 0: none; the entry for all other joints, 0: none
          integer, intent(out) :: of_joint(first:), rest
          integer :: i, j
 
@@ -250,11 +251,13 @@ contains
             return
          end if
          if (drawn .and. first == 0 .and. rest == 0) then
+            ! Only the joint beneath the footing has a spring.
             if (count(of_joint > 0) == 1 .and. of_joint(0) > 0) then
                springs = [list%entry(of_joint(0))%spring]
                return
             end if
          end if
+         ! The first joint that no entry names.
          i = findloc(of_joint, 0, dim=1) + first - 1
          if (i == 0 .and. first == 0) then
             call messages%add('the column stands on a footing, but there is no &'//group// &
@@ -311,7 +314,7 @@ contains
          end do
       end subroutine place_layers
 
-      !> Keys that only springs of frames have.
+      !> Refuse keys that only springs of frames have.
       subroutine refuse_frame()
          integer :: i
 
@@ -327,8 +330,10 @@ contains
 
       !> Report two springs for one joint.
       subroutine twice(entry, first, group, joint)
+         !> The second entry, and the one before it
          type(spring_entry), intent(in) :: entry, first
          character(len=*), intent(in) :: group
+         !> Number of the joint; without it both entries are for all other joints
          integer, intent(in), optional :: joint
          character(len=:), allocatable :: text
 
@@ -372,10 +377,11 @@ contains
       end do
    end subroutine check_ids
 
-   !> Copy the layers into a spring.
+   !> Copy layers, with the springs of the list that they refer to, into a layered spring.
    subroutine set_layers(list, spring, layers, messages)
       type(entry_list), intent(in) :: list
       type(spring_record), intent(inout) :: spring
+      !> Entry of the group &layers
       type(spring_entry), intent(in) :: layers
       type(message_list), intent(inout) :: messages
       type(spring_record), allocatable :: springs(:)

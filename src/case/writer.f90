@@ -94,13 +94,15 @@ contains
       !> Write the values of a group that differ from those of a new record.
       subroutine write_record(group, number, drawing)
          character(len=*), intent(in) :: group
-         !> Which of several
+         !> Number among the groups of this name; without it the last
          integer, intent(in), optional :: number
          !> Drawing that the group is of
          type(drawing_record), intent(inout), optional :: drawing
          type(case_record) :: new
          type(key_visitor) :: v
 
+         ! The visitor collects the defaults from a new record, then lists what differs from them. The keys
+         ! of a section depend on its shape.
          call new%open_group(group)
          if (group == 'section') then
             call new_shape(drawing%section%shape_name, unset, unset, new%drawing(1)%section%shape)
@@ -180,6 +182,7 @@ contains
          type(spring_record), intent(in), allocatable :: spring(:)
          type(spring_entry) :: entry
          integer, allocatable :: first(:)
+         !> 1 on a footing, whose joint has the number 0
          integer :: i, j, beneath
 
          if (.not. allocated(spring)) return
@@ -209,9 +212,10 @@ contains
 
    end subroutine write_case
 
-   !> Add one group.
+   !> Add one group, in the form of a case file or of a statement.
    subroutine add_group(self, name, entry)
       class(case_text), intent(inout) :: self
+      !> Name of the group, and its keys with their values
       character(len=*), intent(in) :: name
       type(entry_type), intent(inout) :: entry(:)
 
@@ -223,7 +227,8 @@ contains
 
    contains
 
-      !> Append `name key key:count key=text`, separated by tabs, and the numbers.
+      !> Append the line `name key key:count key=text`, separated by tabs, and the numbers to their stream. A
+      !> key alone has one number, key:count has several, key=text has none.
       subroutine statement_group()
          character(len=1), parameter :: tab = achar(9)
          integer :: i

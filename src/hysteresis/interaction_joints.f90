@@ -41,9 +41,10 @@ contains
       springs%target_axial_load(:) = springs%reference_axial_load
    end subroutine vary_axial_loads
 
-   !> State of a joint that has lost its axial load.
+   !> How a layered joint falls that has lost its axial load.
    subroutine fall_of(springs, i, fall)
       type(spring_array), intent(in) :: springs
+      !> Flexural spring of the joint
       integer, intent(in) :: i
       type(layer_fall), intent(out) :: fall
 
@@ -56,9 +57,9 @@ contains
    !> Opening of a layered joint on its present line or plane [m]; 0 of other springs.
    pure real(wp) function opening_of(springs, i, d) result(opening)
       type(spring_array), intent(in) :: springs
-      !> Its flexural spring
+      !> Flexural spring of the joint
       integer, intent(in) :: i
-      !> Rotation [rad]
+      !> Rotation of the joint [rad]
       real(wp), intent(in) :: d
 
       opening = 0.0_wp
@@ -80,11 +81,13 @@ contains
       end select
    end function rest_of
 
-   !> Put the layers of a joint on their next lines along a straight path.
+   !> Put the layers of a joint on the lines along which they continue on a straight path, and take the plane
+   !> that follows.
    subroutine update_branches(springs, i, rotation_rate, axial_rate)
       type(spring_array), intent(inout) :: springs
+      !> Flexural spring of the joint
       integer, intent(in) :: i
-      !> Rates of the rotation [rad] and of the axial load [N]
+      !> Changes of the rotation [rad] and of the axial load [N] for each unit of length of the path
       real(wp), intent(in) :: rotation_rate, axial_rate
 
       select type (section => springs%slot(i)%memory)
@@ -97,6 +100,7 @@ contains
    !> The present lines of springs and of layers on planes.
    pure subroutine list_lines(springs, lines)
       type(spring_array), intent(in) :: springs
+      !> Made at the first call, and brought up to date
       type(line_list), intent(inout) :: lines
       integer :: i, j
 
@@ -130,13 +134,14 @@ contains
       end do
    end subroutine list_lines
 
-   !> Where they are at a point of a path, and their rates.
+   !> Where springs and layers are at a point of a path, and their rates.
    pure subroutine place_lines(springs, lines, q, axial_load, rate, axial_rate, d, v)
       type(spring_array), intent(in) :: springs
       type(line_list), intent(in) :: lines
-      !> Deformations and axial loads of the springs, and their rates; one of all axial loads (count)
+      !> Deformations and axial loads of the springs at that point (count) [m or rad, N]; rates of the
+      !> deformations (count), and the one rate of all axial loads
       real(wp), intent(in) :: q(:), axial_load(:), rate(:), axial_rate
-      !> Deformations and rates (lines)
+      !> Deformations and rates, in the order of the list (lines)
       real(wp), intent(inout) :: d(:), v(:)
       integer :: i, j, joint
 
@@ -158,19 +163,23 @@ contains
    !> Moment of a layered joint on its plane [N m].
    elemental real(wp) function moment_on_plane(springs, i, rotation, axial_load) result(moment)
       type(spring_array), intent(in) :: springs
+      !> Flexural spring of the joint
       integer, intent(in) :: i
+      !> Rotation [rad]; axial load, compression positive [N]
       real(wp), intent(in) :: rotation, axial_load
 
       moment = springs%f0(i) + springs%k(i)*(rotation - springs%d0(i)) &
                - springs%centre(i)*(axial_load - springs%reference_axial_load(i))
    end function moment_on_plane
 
-   !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
-   !> Its work is left to the caller.
+   !> Move a layered joint on its plane to a point. The caller adds the work.
    subroutine put_on_plane(springs, i, rotation, axial_load, rotation_rate, axial_rate, first)
       type(spring_array), intent(inout) :: springs
+      !> Flexural spring of the joint
       integer, intent(in) :: i
+      !> Rotation [rad] and axial load, compression positive [N], of that point, and rates on the way to it
       real(wp), intent(in) :: rotation, axial_load, rotation_rate, axial_rate
+      !> The layer that comes to the end of its line there, 0 for none
       integer, intent(in) :: first
 
       select type (section => springs%slot(i)%memory)
@@ -182,9 +191,9 @@ contains
       if (first > 0) springs%events = springs%events + 1
    end subroutine put_on_plane
 
-   !> Springs that were restored continue under other axial loads: at their rotations layered joints move
-   !> straight to them. Those under the load that they have stay as they are, unless they were on planes and
-   !> are to be on lines.
+   !> Springs that were restored from a saved state continue under other axial loads: at their rotations
+   !> layered joints move straight to these loads. A joint whose load does not change stays as it is, unless
+   !> it changes from a plane to a line or back.
    subroutine change_axial_loads(springs, axial_load, from_planes)
       type(spring_array), intent(inout) :: springs
       !> Compression positive (count) [N]

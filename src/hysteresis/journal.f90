@@ -38,6 +38,7 @@ contains
       class(journal_type), intent(inout) :: self
       !> Present deformations and works (count)
       real(wp), intent(in), contiguous :: d(:), work(:)
+      !> Number of branches left so far
       integer, intent(in) :: events
       integer :: i, n
 
@@ -63,6 +64,7 @@ contains
    subroutine keep(self, i, line, slot)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
+      !> Present branch of spring i; in its slot the memory is copied
       type(segment), intent(in) :: line
       type(spring_slot), intent(inout) :: slot
 
@@ -76,7 +78,7 @@ contains
       call save_memory(slot)
    end subroutine keep
 
-   !> A spring leaves a branch by its end.
+   !> Spring i leaves a branch by its end in a direction, +1 or -1.
    pure subroutine leave_branch(self, i, direction, last)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i, direction
@@ -87,6 +89,7 @@ contains
          self%direction(i) = direction
          self%beyond(i) = last
       else if (self%direction(i) /= direction) then
+         ! The spring has turned: it cannot pass through the same branches in one move.
          self%direction(i) = 0
       else
          self%beyond(i) = direction*max(direction*self%beyond(i), direction*last)
@@ -94,17 +97,19 @@ contains
       self%branches(i) = self%branches(i) + 1
    end subroutine leave_branch
 
-   !> It has entered the next branch.
+   !> Spring i, which has left a branch, has entered the next one.
    pure subroutine enter_branch(self, i, d, work)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
+      !> Deformation [m or rad] and work [J] there
       real(wp), intent(in) :: d, work
 
       self%d_entered(i) = d
       self%work_entered(i) = work
    end subroutine enter_branch
 
-   !> Whether a spring on its way from the mark to another deformation enters its present branch as before.
+   !> Whether spring i on its way from the mark to a deformation d passes through the same branches as before
+   !> and enters its present one. With a direction of 0 (it had turned) the answer is no.
    pure logical function passes_again(self, i, d)
       class(journal_type), intent(in) :: self
       integer, intent(in) :: i
@@ -140,7 +145,7 @@ contains
       end select
    end subroutine save_memory
 
-   !> Give a spring the memory back that was saved.
+   !> Give a spring the memory back that was saved: the copy, or for a layered joint the state it has marked.
    subroutine return_memory(slot)
       type(spring_slot), intent(inout) :: slot
 
@@ -160,7 +165,7 @@ contains
 
       integer :: j
 
-      ! As an assignment to elements of a list it would allocate a copy of the list.
+      ! An assignment to all of these elements at once would allocate a copy of their list.
       do j = 1, self%changed
          self%is_kept(self%spring(j)) = .false.
       end do

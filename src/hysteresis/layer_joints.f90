@@ -47,7 +47,9 @@ contains
       class(layer_joints), intent(out) :: self
       !> Joint of each spring, 0 for none; the layers of a joint follow each other
       integer, intent(in) :: of(:)
+      !> Distances of the layers from the middle of their sections (springs) [m]
       real(wp), intent(in) :: y(:)
+      !> Number of coordinates of a position before those of the joints
       integer, intent(in) :: before
       integer :: i, j
 
@@ -67,7 +69,7 @@ contains
       allocate (self%is_changed(self%count), source=.true.)
    end subroutine create
 
-   !> Opening and rotation of a joint in a position.
+   !> Opening [m] and rotation [rad] of a joint in a position.
    pure function motion(self, joint, d) result(z)
       class(layer_joints), intent(in) :: self
       integer, intent(in) :: joint
@@ -81,14 +83,15 @@ contains
    !> Axial forces and moments of the joints on the present lines, in the places of their first two layers.
    pure subroutine forces(self, d, f)
       class(layer_joints), intent(in) :: self
-      !> (coordinates), (springs)
+      !> Position (coordinates); forces (springs), of which those places are set [N, N m]
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(inout), contiguous :: f(:)
 
       call resist(self%count, size(f), self%first, self%sums, self%anchor, d(self%before + 1:), f)
    end subroutine forces
 
-   !> Force and moment of each joint at its deformations, from the sums of its layers.
+   !> Force and moment of each of n joints at its opening and rotation d, from the sums over its layers (as in
+   !> `layer_joints`): f(first) and f(first + 1) are set.
    pure subroutine resist(n, springs, first, sums, anchor, d, f)
       integer, intent(in) :: n, springs, first(n)
       real(wp), intent(in) :: sums(5, n), anchor(2, n), d(2, n)
@@ -107,6 +110,7 @@ contains
    !> Deformations of the layers in a position, or changes of them.
    pure subroutine open_layers(self, d)
       class(layer_joints), intent(in) :: self
+      !> Position, or its change; the elements of the layers follow from those of the joints (coordinates)
       real(wp), intent(inout), contiguous :: d(:)
       integer :: j
 
@@ -117,10 +121,11 @@ contains
       end do
    end subroutine open_layers
 
-   !> Changes of the deformations of the layers that bring them in line with their joints.
+   !> Set the changes of the deformations of the layers so that after the change they agree with the openings
+   !> and rotations of their joints.
    pure subroutine align(self, d, change)
       class(layer_joints), intent(in) :: self
-      !> Position, and its change (coordinates)
+      !> Position, and its change, of which the elements of the layers are set (coordinates)
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(inout), contiguous :: change(:)
       real(wp) :: z(2)
@@ -134,6 +139,7 @@ contains
       end do
    end subroutine align
 
+   !> Deformations d of the n layers of a joint with the opening z(1) and the rotation z(2).
    pure subroutine open_up(n, y, z, d)
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), z(2)
@@ -150,7 +156,7 @@ contains
    pure subroutine sum_up(self, joint, d0, f0, k)
       class(layer_joints), intent(inout) :: self
       integer, intent(in) :: joint
-      !> Lines (springs)
+      !> Lines f0 + k (d - d0) of all springs (springs)
       real(wp), intent(in), contiguous :: d0(:), f0(:), k(:)
 
       associate (i => self%first(joint), last => self%last(joint))
@@ -161,7 +167,8 @@ contains
       self%is_changed(joint) = .false.
    end subroutine sum_up
 
-   !> Sums of the layers of a joint: stiffness, force and moment at its deformations z.
+   !> Sums over the n layers of a joint: of k, k y and k y**2, force and moment at the opening z(1) and the
+   !> rotation z(2).
    pure subroutine add_up(n, y, z, d0, f0, k, sums)
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), z(2), d0(n), f0(n), k(n)
@@ -180,7 +187,7 @@ contains
       sums = [stiffness_sums(n, y, k), force, moment]
    end subroutine add_up
 
-   !> Sums of k, k y and k y**2.
+   !> Sums of k, k y and k y**2 over n layers [N/m, N, N m].
    pure function stiffness_sums(n, y, k) result(sums)
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), k(n)
@@ -202,7 +209,7 @@ contains
    !> Whether all layers stay on their lines in another position.
    pure subroutine stay_on_lines(self, d, lower, upper, one_way, stay)
       class(layer_joints), intent(inout) :: self
-      !> (coordinates)
+      !> Other position (coordinates)
       real(wp), intent(in), contiguous :: d(:)
       !> Lowest and highest deformations of the lines, whether they are left when the motion turns (springs)
       real(wp), intent(in), contiguous :: lower(:), upper(:)
@@ -229,6 +236,7 @@ contains
 
    !> Whether the distance from one motion of a joint to another is less than its clearance.
    pure logical function is_within_clearance(z, seen, reach, clearance)
+      !> Motions (opening [m], rotation [rad]); distance of the outermost layer and clearance [m]
       real(wp), intent(in) :: z(2), seen(2), reach, clearance
 
       is_within_clearance = abs(z(1) - seen(1)) + reach*abs(z(2) - seen(2)) < clearance
@@ -236,6 +244,7 @@ contains
 
    !> Least distance of any layer from a motion of the joint to an end of its line, negative beyond it.
    pure subroutine find_clearance(n, y, z, lower, upper, clearance)
+      !> Layers: number, distances y [m], ends of their lines [m]; z: opening [m] and rotation [rad]
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), z(2), lower(n), upper(n)
       real(wp), intent(out) :: clearance

@@ -104,10 +104,12 @@ contains
       k = [(self%list(self%of(i))%rule%initial_stiffness, i=1, size(k))]
    end function stiffness_of_springs
 
-   !> The branch that follows from the rule, see `rule_type`.
+   !> The branch that follows when the motion leaves the present one by its end in a direction.
    subroutine next_branch(self, branch, direction, flexural_work)
       class(spring_slot), intent(inout) :: self
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
+      !> +1: the motion goes up, -1: down
       integer, intent(in) :: direction
       !> Work of the flexural spring of the joint so far [J]; for a spring that decays with it
       real(wp), intent(in) :: flexural_work
@@ -125,7 +127,8 @@ contains
       self%flexural_work = other%flexural_work
    end subroutine copy
 
-   !> Save or restore all history variables: everything that `next` changes.
+   !> Save or restore all history variables: everything that `next` changes. Here there is none, as the work
+   !> of the flexural spring is set anew before each event.
    pure subroutine serialize(self, stream)
       class(rule_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -144,9 +147,10 @@ contains
       end if
    end subroutine copy_memory
 
-   !> Take the parameters in the order of their keys; one that is not given has its default.
+   !> Take the parameters; one that is not given has its default.
    subroutine take(self, value)
       class(rule_type), intent(inout) :: self
+      !> Parameters in the order of their keys; `unset`: not given
       real(wp), intent(in), contiguous, target :: value(:)
       type(key_visitor) :: v
 
@@ -181,7 +185,7 @@ contains
    !> The memory of a virgin spring, and its branch.
    subroutine start(self, axial_load, memory, branch)
       class(rule_type), intent(in) :: self
-      !> Which only layers carry, compression positive [N]
+      !> Axial load, compression positive [N]; only the rule of layers uses it
       real(wp), intent(in) :: axial_load
       class(rule_memory), allocatable, intent(out) :: memory
       type(segment), intent(out) :: branch
@@ -194,8 +198,10 @@ contains
       end if
    end subroutine start
 
-   !> Stiffness times deformation must neither overflow nor vanish.
+   !> Add a message where stiffness times deformation would overflow or vanish, or where one of the two alone
+   !> takes more than half of the exponents that numbers can have.
    subroutine check_product(k, d, name, product_name, messages)
+      !> Stiffness [N/m or N m/rad] and deformation [m or rad], both above zero
       real(wp), intent(in) :: k, d
       !> Names of the spring and of the product for the message: 'k d_y'
       character(len=*), intent(in) :: name, product_name

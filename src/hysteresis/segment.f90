@@ -58,7 +58,8 @@ contains
       !> Whether the branch is left when the motion turns back from s, by default yes. The spring is on the
       !> near end of such a branch
       logical, intent(in), optional :: unload_on_reversal
-      !> Whether the near end belongs to a branch that leads both ways, by default yes
+      !> Whether the near end belongs to a branch that leads both ways, by default yes; it always belongs to
+      !> one that is left when the motion turns back
       logical, intent(in), optional :: includes_near_end
       logical :: included
 
@@ -91,7 +92,7 @@ contains
       call stream%item(self%unload_on_reversal)
    end subroutine serialize
 
-   !> The lowest and the highest deformation of a line. At an open end it is the number next to it.
+   !> The lowest deformation that belongs to a line: its lower end, or the number above an open one.
    pure real(wp) function lowest_on(line)
       type(segment), intent(in) :: line
 
@@ -99,6 +100,7 @@ contains
       if (.not. line%includes_lower_end .and. line%lo > -unbounded) lowest_on = next_above(line%lo)
    end function lowest_on
 
+   !> The highest deformation that belongs to a line: its upper end, or the number below an open one.
    pure real(wp) function highest_on(line)
       type(segment), intent(in) :: line
 
@@ -106,18 +108,20 @@ contains
       if (.not. line%includes_upper_end .and. line%hi < unbounded) highest_on = -next_above(-line%hi)
    end function highest_on
 
-   !> The upper end of a line from the highest deformation that belongs to it.
+   !> The upper end of a line from the highest deformation that belongs to it: the inverse of `highest_on`.
    elemental real(wp) function upper_end(highest, closed)
       real(wp), intent(in) :: highest
+      !> Whether the end itself belongs to the line
       logical, intent(in) :: closed
 
       upper_end = highest
       if (.not. closed .and. highest < unbounded) upper_end = next_above(highest)
    end function upper_end
 
-   !> The lower end of a line from the lowest deformation that belongs to it.
+   !> The lower end of a line from the lowest deformation that belongs to it: the inverse of `lowest_on`.
    elemental real(wp) function lower_end(lowest, closed)
       real(wp), intent(in) :: lowest
+      !> Whether the end itself belongs to the line
       logical, intent(in) :: closed
 
       lower_end = lowest
@@ -125,7 +129,8 @@ contains
    end function lower_end
 
    !> The next larger number, as `nearest(x, 1.0)` for finite numbers. The latter is a call of the C library,
-   !> and an event needs up to five of them.
+   !> and an event needs up to five of them. The bits of a number, read as an integer, count the numbers from
+   !> zero on: one more leads away from zero.
    elemental real(wp) function next_above(x)
       real(wp), intent(in) :: x
 

@@ -114,6 +114,7 @@ contains
    !> Check the layers of a joint and their springs.
    recursive subroutine validate_layers(self, name, messages)
       type(spring_record), intent(in) :: self
+      !> Name of the spring: 'shear spring of joint 2'
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       type(spring_record) :: layer
@@ -162,7 +163,7 @@ contains
       end associate
    end subroutine move_to_line
 
-   !> Whether the layer before has the same spring.
+   !> Whether the layer before layer i has the same spring.
    pure logical function same_as_before(self, i)
       type(spring_record), intent(in) :: self
       integer, intent(in) :: i
@@ -180,7 +181,7 @@ contains
       if (same_layer) same_layer = all(same_bits(self%layer_value(:, i), self%layer_value(:, j)))
    end function same_layer
 
-   !> Whether two numbers are the same, without comparing a NaN.
+   !> Whether two numbers have the same bits: a NaN must not be compared, as that may trap.
    elemental logical function same_bits(a, b)
       use, intrinsic :: iso_fortran_env, only: int64
       real(wp), intent(in) :: a, b
@@ -255,7 +256,8 @@ contains
       end do
    end subroutine make_layers
 
-   !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad].
+   !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad]. The spring must
+   !> have been validated.
    impure elemental real(wp) function initial_stiffness(self)
       class(spring_record), intent(in) :: self
       class(rule_type), allocatable :: rule
@@ -267,10 +269,12 @@ contains
    !> Add the rules of springs; neighbours that are equal share one.
    subroutine add_rules(rules, spring, count)
       type(spring_rules), intent(inout) :: rules
-      !> Validated: one for all, or one for each
+      !> Validated springs: one for all, or one for each
       type(spring_record), intent(in) :: spring(:)
+      !> Number of springs that are added
       integer, intent(in) :: count
       type(rule_slot), allocatable :: list(:)
+      !> Of each new rule the first spring that has it; of each new spring its rule
       integer :: first(count), of(count), before, i, j, n
 
       if (.not. allocated(rules%list)) allocate (rules%list(0), rules%name(0), rules%of(0))

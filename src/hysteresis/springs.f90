@@ -163,11 +163,11 @@ contains
       call self%find_forces(d, f)
    end function forces
 
-   !> Forces in a position on the present lines; of a joint of layers axial force and moment, in the places of
-   !> its first two layers; the other layers have none.
+   !> Forces in a position on the present lines [N or N m]. A joint of layers has its axial force and its
+   !> moment in the places of its first two layers; the elements of its other layers are not touched.
    pure subroutine find_forces(self, d, f)
       class(spring_array), intent(in) :: self
-      !> Deformations come first
+      !> Deformations (count) [m or rad], behind them further coordinates; forces (count)
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(inout), contiguous :: f(:)
       integer :: i, j
@@ -183,6 +183,7 @@ contains
       call self%joints%forces(d, f)
    end subroutine find_forces
 
+   !> Forces of n springs on the lines f0 + k (d - d0), on bare arrays.
    pure subroutine on_lines(n, d0, f0, k, d, f)
       integer, intent(in) :: n
       real(wp), intent(in) :: d0(n), f0(n), k(n), d(n)
@@ -191,9 +192,11 @@ contains
       f = f0 + k*(d - d0)
    end subroutine on_lines
 
-   !> Forces by a change of the position, as those of `find_forces`, with a stiffness of each spring.
+   !> Forces that a change of the position causes, in the places of `find_forces`, if each spring had the
+   !> stiffness k.
    pure subroutine find_resistance(self, k, change, f)
       class(spring_array), intent(in) :: self
+      !> Stiffnesses (count) [N/m or N m/rad]; change of the position (coordinates) [m or rad]
       real(wp), intent(in), contiguous :: k(:), change(:)
       real(wp), intent(out), contiguous :: f(:)
       type(layer_joints) :: joints
@@ -201,6 +204,7 @@ contains
 
       f = k*change(:self%count)
       if (self%joints%count == 0) return
+      ! The sums of a copy of the joints, on lines through zero: f, set to zero there, serves as d0 and f0.
       joints = self%joints
       joints%anchor = 0.0_wp
       do j = 1, joints%count
@@ -220,6 +224,7 @@ contains
       end do
    end subroutine sum_up_joints
 
+   !> Find the sums of one joint on the present lines of its layers, with its present motion as anchor.
    pure subroutine sum_up_joint(self, joint)
       type(spring_array), intent(inout) :: self
       integer, intent(in) :: joint
@@ -228,7 +233,7 @@ contains
       call self%joints%sum_up(joint, self%d0, self%f0, self%k)
    end subroutine sum_up_joint
 
-   !> The same of the joint of a spring.
+   !> Find the sums of the joint that spring i is a layer of, if it is one.
    pure subroutine sum_up_joint_of(self, i)
       type(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -305,6 +310,7 @@ contains
    !> back, one that unloads on reversal ends at the present deformation.
    subroutine change_line(self, i, direction)
       class(spring_array), intent(inout) :: self
+      !> Spring; +1: it leaves by the upper end, -1: by the lower end
       integer, intent(in) :: i, direction
       type(segment) :: line
       real(wp) :: flexural_work
@@ -334,6 +340,7 @@ contains
       integer, intent(in) :: direction
 
       call change_line(self, i, direction)
+      ! Direction 0: `retry` does not let this spring enter its branch again as before.
       if (self%journal%open) self%journal%direction(i) = 0
       ! A branch that unloads on reversal starts at the present deformation, to the last bit.
       if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
@@ -344,6 +351,7 @@ contains
    !> Put a spring exactly on the end of its line in a direction; from an open end it takes the next line.
    subroutine arrive(self, i, direction)
       class(spring_array), intent(inout) :: self
+      !> Spring; +1: upper end, -1: lower end
       integer, intent(in) :: i, direction
       logical :: closed
 
@@ -380,6 +388,7 @@ contains
                   return
                end if
             end associate
+            ! The line has no end, and the force is not on it.
             if (abs(far) >= unbounded) exit
          end if
          call self%leave(i, direction)
@@ -409,9 +418,8 @@ contains
       call sum_up_joints(self)
    end subroutine restore
 
-   !> Move every spring from the mark to new deformations. Of those that pass through the branches of
-   !> the last move, all but the last branch are reused: the state is the same to the
-   !> last bit.
+   !> Move every spring from the mark to new deformations. A spring that passes through the same branches as
+   !> in the last move is put where it entered the last of them; the state is the same to the last bit.
    subroutine retry(self, d)
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
@@ -480,6 +488,7 @@ contains
    !> branch and memory stay.
    subroutine go_back(self, d)
       type(spring_array), intent(inout) :: self
+      !> New deformations (count) [m or rad]; without them every spring returns
       real(wp), intent(in), contiguous, optional :: d(:)
       logical :: stays
       integer :: i, j, left
@@ -517,7 +526,7 @@ contains
       if (self%axial_load_varies) call self%fit_planes()
    end subroutine go_back
 
-   !> Save or restore the deformations of the springs and the memory of their rules.
+   !> Save or restore the deformations, lines and works of the springs and the memory of their rules.
    subroutine serialize(self, stream)
       class(spring_array), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -582,7 +591,7 @@ contains
       if (self%joints%of(i) > 0) self%joints%is_changed(self%joints%of(i)) = .true.
    end subroutine put_line
 
-   !> Put a spring on a line that was found elsewhere, at d.
+   !> Put spring i on a given line at the deformation d.
    pure subroutine put(self, i, line, d, work)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -598,16 +607,18 @@ contains
       call sum_up_joint_of(self, i)
    end subroutine put
 
-   !> Let a spring have a constant force from now on.
+   !> Let spring i have a constant force from now on.
    pure subroutine release(self, i, force)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
+      !> [N or N m]
       real(wp), intent(in) :: force
 
       call self%put(i, segment(f0=force), self%d(i), self%work(i))
    end subroutine release
 
-   !> Whether its member was removed: no rule has a line without stiffness and without ends.
+   !> Whether the member of spring i was removed, so that `release` has given the spring a line without
+   !> stiffness and without ends, which no rule has.
    pure logical function is_removed(self, i)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i
@@ -634,15 +645,16 @@ contains
       end if
       call leave_lines(self, d, again=.false.)
       if (self%stuck) return
-      ! Springs that have arrived do not move any more.
+      ! The others move along their lines; a spring that has arrived stays where it is.
       call advance_all(self, d)
       call sum_up_joints(self)
    end subroutine move_all
 
-   !> Whether all springs can go to a new position on their present lines, within the bounds of all meaning.
+   !> Whether all springs can go to a new position on their present lines, with no deformation of
+   !> `out_of_bounds` or more. Where axial loads vary the answer is no.
    logical function stay_on_lines(self, d)
       class(spring_array), intent(inout) :: self
-      !> Deformations of layers follow from those of their joints
+      !> New position (coordinates) [m or rad]; deformations of layers are found from those of their joints
       real(wp), intent(in), contiguous :: d(:)
       integer :: i, j
 
@@ -678,6 +690,7 @@ contains
    !> Whether deformations are on their lines, and none is out of bounds.
    pure logical function are_within(n, d, lower, upper)
       integer, intent(in) :: n
+      !> Deformations, and the lowest and highest of each line [m or rad]
       real(wp), intent(in) :: d(n), lower(n), upper(n)
       real(wp) :: outside, beyond
       integer :: i
@@ -692,7 +705,7 @@ contains
       are_within = .not. outside > 0.0_wp
    end function are_within
 
-   !> `advance_on_branch` for the two springs of one body.
+   !> `advance_on_branch` for the two springs of one body, to the deformations `to`.
    pure subroutine advance_pair(to, d0, f0, k, unload_on_reversal, d, work, lower, upper)
       integer, intent(in) :: unload_on_reversal(2)
       real(wp), intent(in) :: to(2), d0(2), f0(2), k(2)
@@ -710,6 +723,7 @@ contains
    !> `advance_on_branch` for all springs at once, and the coordinates behind them.
    pure subroutine advance_all(self, d)
       type(spring_array), intent(inout) :: self
+      !> New deformations (count), perhaps with the coordinates behind them [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
       call advance_each(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
@@ -717,7 +731,8 @@ contains
       if (size(d) > self%count) self%d(self%count + 1:) = d(self%count + 1:)
    end subroutine advance_all
 
-   !> Move springs along their lines, with their works; one-way lines then begin where the springs are.
+   !> Move n springs along their lines to the deformations `to`, with their works; lines that unload on
+   !> reversal then begin where the springs are.
    pure subroutine advance_each(n, to, d0, f0, k, unload_on_reversal, d, work, lower, upper)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
@@ -737,7 +752,8 @@ contains
       end do
    end subroutine advance_each
 
-   !> The plane that a layered joint is on.
+   !> Take the plane that layered joint i is on, d0 to `centre`; as a line it has no ends, as those of its
+   !> layers count.
    subroutine read_plane(self, i)
       type(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -753,7 +769,7 @@ contains
       self%version = modulo(self%version + 1, huge(1))
    end subroutine read_plane
 
-   !> Read the planes that the layered joints are on.
+   !> Take the planes that the layered joints are on.
    subroutine fit_planes(self)
       class(spring_array), intent(inout) :: self
       integer :: j
@@ -772,6 +788,7 @@ contains
 
       do j = 1, size(self%layered)
          i = self%layered(j)
+         ! A joint stays if neither its rotation nor its axial load changes.
          if (.not. abs(d(i) - self%d(i)) + &
              abs(self%target_axial_load(i) - self%reference_axial_load(i)) > 0.0_wp) cycle
          if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
@@ -812,6 +829,7 @@ contains
       type(spring_rules), target :: rules
       integer :: j
 
+      ! One spring, which decays with the work of no other.
       call add_rules(rules, [spec], 1)
       call spring%create(rules, spread([0], 1, 2), [spec%axial_load], 1)
       do j = 1, size(d)

@@ -13,11 +13,12 @@ module rbs_hysteresis_straight_motion
 
 contains
 
-   !> Springs blocked on their lines in their direction of motion.
+   !> Springs that cannot move on along their lines: they are on the end, or unload on this reversal.
    pure subroutine find_blocked(springs, rate, blocked, count)
       type(spring_array), intent(in) :: springs
+      !> Rates of the springs that move; only their signs count
       real(wp), intent(in), contiguous :: rate(:)
-      !> The springs, and how many they are
+      !> The blocked springs (the first `count` elements), and how many they are
       integer, intent(out) :: blocked(size(rate)), count
       integer :: i
 
@@ -25,7 +26,8 @@ contains
       associate (d => springs%d, lower => springs%lower, upper => springs%upper, &
                  one_way => springs%unload_on_reversal)
          do i = 1, size(rate)
-            ! A spring is beyond the highest deformation of its line where the end itself is no part of it.
+            ! `upper` is the highest deformation of the line: where the end does not belong to it, the number
+            ! below the end, and only a spring beyond that number is blocked.
             if (rate(i) > 0.0_wp) then
                if (d(i) < upper(i) .and. one_way(i) >= 0) cycle
                if (.not. (d(i) > upper(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle
@@ -41,14 +43,14 @@ contains
       end associate
    end subroutine find_blocked
 
-   !> The first end of a line that springs reach from given deformations.
+   !> The first end of a line that springs reach from the deformations q, moving by q + stride*rate.
    pure subroutine nearest_end(springs, q, rate, stride, ends)
       type(spring_array), intent(in) :: springs
-      !> Deformations and rates
+      !> Deformations [m or rad] and rates of the springs that move
       real(wp), intent(in), contiguous :: q(:), rate(:)
-      !> In units of the rates; `huge` if there is none
+      !> The stride at which that end is reached; `huge` if there is none
       real(wp), intent(out) :: stride
-      !> The spring, 0 for none
+      !> The spring that reaches it, 0 for none
       integer, intent(out) :: ends
       real(wp) :: clearance, most
       integer :: i
@@ -58,8 +60,8 @@ contains
       ends = 0
       associate (lower => springs%lower, upper => springs%upper)
          do i = 1, size(q)
-            ! The end itself may lie beyond the highest deformation of the line: far beyond, where
-            ! the rate is next to nothing.
+            ! Most springs are passed over by the highest deformation of the line. The end itself may be the
+            ! next number: a long stride, where the rate is next to nothing.
             if (rate(i) > 0.0_wp) then
                if (upper(i) - q(i) > most*rate(i)) cycle
                clearance = distance(springs%end_toward(i, 1) - q(i), rate(i))
@@ -77,8 +79,10 @@ contains
       end associate
    end subroutine nearest_end
 
-   !> How long a spring needs for a distance; `huge` on a line without end.
+   !> How many times its rate a spring moves over a distance; `huge` on a line without end, or where the
+   !> quotient would overflow.
    elemental real(wp) function distance(stride, rate)
+      !> Distance to the end [m or rad], below zero only by round-off; rate, above zero
       real(wp), intent(in) :: stride, rate
 
       distance = huge(1.0_wp)
@@ -88,14 +92,15 @@ contains
    !> Springs move at constant rates from given deformations, each on its own line and not beyond its end, and
    !> the coordinates behind them move too.
    pure subroutine go_along(springs, moving, q, rate, stride, slack, way, near, count)
+      !> Their deformations, works and moving rear ends are brought up to date
       type(spring_array), intent(inout) :: springs
       !> Number of springs that move, the first ones
       integer, intent(in) :: moving
-      !> From where (size of `d`), and the rates; in units of the rates
+      !> Deformations at the start [m or rad] and rates (size of `springs%d`)
       real(wp), intent(in), contiguous :: q(:), rate(:)
+      !> The motion is to q + stride*rate
       real(wp), intent(in) :: stride
-      !> Springs that come closer than this to the end of their line, in shares of the end or on a way in
-      !> units of the rates, are near it
+      !> A spring is near the end of its line if the distance left is at most slack*|end| + way*|rate|
       real(wp), intent(in) :: slack, way
       !> The springs near the ends that they approach, and their number
       integer, intent(out) :: near(moving), count
@@ -108,7 +113,8 @@ contains
                          near, count)
    end subroutine go_along
 
-   !> The loops of `go_along` on bare arrays, from which the compiler makes vector instructions.
+   !> The loops of `go_along`, with its arguments, on bare arrays, from which the compiler makes vector
+   !> instructions: n springs on lines f0 + k (d - d0) between `lower` and `upper`.
    pure subroutine advance_along(n, q, rate, stride, slack, way, d0, f0, k, unload_on_reversal, d, work, &
                                  lower, upper, near, count)
       integer, intent(in) :: n, unload_on_reversal(n)
@@ -120,6 +126,7 @@ contains
 
       !$omp simd
       do i = 1, n
+         ! The work of a line is exact with the force in the middle of the way.
          to = min(max(q(i) + rate(i)*stride, lower(i)), upper(i))
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
          d(i) = to
@@ -131,6 +138,7 @@ contains
          if (rate(i) > 0.0_wp) then
             if (upper(i) - d(i) > slack*abs(upper(i)) + way*rate(i)) cycle
          else
+            ! The rate is not above zero here, so the last term is not below it.
             if (d(i) - lower(i) > slack*abs(lower(i)) - way*rate(i)) cycle
          end if
          count = count + 1

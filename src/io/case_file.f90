@@ -55,8 +55,9 @@ contains
 
    contains
 
-      !> Make the values of every loading that has no error of its own.
+      !> Make the values of every loading that has no error of its own, and put them into `history`.
       subroutine load_values(folder)
+         !> Folder of the case, with a slash at its end, or empty
          character(len=*), intent(in) :: folder
          type(error_type), allocatable :: fault
          type(message_list) :: own
@@ -108,7 +109,8 @@ contains
          if (case%loadings == 0) call messages%add('the case has no loading; give it a group &loading')
       end subroutine load_values
 
-      !> End the history at the duration of the user: earlier, or later with the last value held.
+      !> End the times of the history at the duration of the user: earlier, or later than the loading, whose
+      !> last value is held then.
       subroutine cut_duration(spec)
          type(analysis_record), intent(in) :: spec
          real(wp) :: finish
@@ -126,23 +128,25 @@ contains
 
    end subroutine load_case
 
-   !> Let rest follow a record that ends before another one.
+   !> Let rest follow a record that ends before another one: a zero at the next time of all.
    subroutine end_in_rest(all_times, record)
+      !> Times of all loadings, ascending [s]
       real(wp), intent(in) :: all_times(:)
       type(signal_type), intent(inout) :: record
       integer :: n, known
 
       n = size(record%time)
       if (n < 2) return
-      ! Times that differ by round-off are one.
+      ! Times up to half a step behind the end of the record count as its end: they may differ by round-off.
       known = count(all_times < 1.5_wp*record%time(n) - 0.5_wp*record%time(n - 1))
       if (known == size(all_times)) return
       record%time = [record%time, all_times(known + 1)]
       record%value = [record%value, 0.0_wp]
    end subroutine end_in_rest
 
-   !> Merge the times of two loadings into one ascending list. Times that differ by round-off are merged.
+   !> Merge the times of one more loading into an ascending list. Times that differ by round-off become one.
    subroutine join_times(all_times, more)
+      !> Times of the loadings so far, not allocated before the first; times of one more, ascending [s]
       real(wp), allocatable, intent(inout) :: all_times(:)
       real(wp), intent(in) :: more(:)
       real(wp), allocatable :: joined(:)

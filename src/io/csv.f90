@@ -41,6 +41,7 @@ contains
          call put_line(self, '# '//trim(comments(i)), error)
          if (allocated(error)) return
       end do
+      ! Names of the columns, with the units of the file, and the SI units of their values.
       call self%channels%get_labels(self%units, labels, self%si)
       allocate (character(len=(len(labels) + 1)*size(labels)) :: line)
       at = 0
@@ -54,9 +55,10 @@ contains
       self%buffer = repeat(' ', width*size(labels))
    end subroutine write_head
 
-   !> Write one row.
+   !> Write one row. After an error nothing is written any more.
    subroutine record(self, row, error)
       class(csv_recorder), intent(inout) :: self
+      !> Values in SI, in the order of the columns
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
       character(len=width) :: number
@@ -78,6 +80,7 @@ contains
       self%count = self%count + 1
    end subroutine record
 
+   !> Write one line.
    subroutine put_line(self, line, error)
       class(csv_recorder), intent(inout) :: self
       character(len=*), intent(in) :: line

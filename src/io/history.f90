@@ -50,10 +50,10 @@ module rbs_io_history
 
 contains
 
-   !> Read a history.
+   !> Read a history: a PEER file, an AT2 file or a csv.
    subroutine read_history(path, format, history, error)
       character(len=*), intent(in) :: path
-      !> 'peer', 'csv' or 'auto'
+      !> 'peer', 'csv' (or AT2), or 'auto': as the file looks
       character(len=*), intent(in) :: format
       type(history_type), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
@@ -176,7 +176,8 @@ contains
          end if
       end subroutine read_peer
 
-      !> Whether a comment has a unit of acceleration or of a rate, or the word.
+      !> Whether a comment states a unit of acceleration or of a rate, or has the word unit in some language.
+      !> The comment is in lower case.
       logical function states_unit(comment)
          character(len=*), intent(in) :: comment
          character(len=4), parameter :: marks(20) = &
@@ -189,7 +190,7 @@ contains
 
       !> Comments with #, perhaps a line of names, then numbers.
       subroutine read_csv()
-         !> Of columns, the first that the line has
+         !> Separators of columns: the first of these that the line has counts
          character(len=*), parameter :: separators = ';,'//tab//' '
          type(field_list) :: fields
          character(len=1) :: separator
@@ -211,11 +212,13 @@ contains
             call fatal_error(error, bad_input, path//': has no rows of numbers; check the file')
             return
          end if
+         ! Without any other separator the loop ends at the blank.
          do i = 1, len(separators) - 1
             if (index(trim(file%text(first:last)), separators(i:i)) > 0) exit
          end do
          separator = separators(i:i)
          call split(file%text(:last), first, separator, fields)
+         ! A line of names has at least one word, and no number.
          named = .true.
          worded = .false.
          do i = 1, fields%count
@@ -224,6 +227,7 @@ contains
             if (status == number_wrong) worded = .true.
          end do
          named = named .and. worded
+         ! A first row of numbers is read again below.
          allocate (history%labels(fields%count))
          history%labels = ''
          if (named) then
@@ -242,7 +246,8 @@ contains
          end if
       end subroutine read_csv
 
-      !> Read rows of numbers to the end of the file; every row must be as long as the first.
+      !> Read rows of numbers to the end of the file into `history`; every row must be as long as the first.
+      !> A first pass counts the rows.
       subroutine read_rows(separator)
          character(len=1), intent(in) :: separator
          type(field_list) :: fields
@@ -290,7 +295,7 @@ contains
          end do
       end subroutine read_rows
 
-      !> Number of a field of the present line.
+      !> The number in field i of the present line; `error` is set if it is none.
       subroutine read_field(fields, i, value)
          type(field_list), intent(in) :: fields
          integer, intent(in) :: i
@@ -311,7 +316,8 @@ contains
 
    end subroutine read_history
 
-   !> A PEER file has a name, a count (perhaps followed by 0), and then at least two numbers per line.
+   !> Whether a file is one of PEER: it has a line with a name, a line with a count (perhaps followed by 0),
+   !> and then at least two numbers in a line. The file is left at its start.
    logical function is_peer(file)
       type(text_file), intent(inout) :: file
       type(field_list) :: fields
@@ -350,8 +356,8 @@ contains
       end do
    end function count_numbers
 
-   !> An AT2 file of a ground motion has four lines above its numbers, the last with their count, NPTS, and
-   !> the time step, DT.
+   !> Whether a file is an AT2 file of a ground motion: of its four lines above the numbers the last names
+   !> their count, NPTS, and the time step, DT. The file is left at its start.
    logical function is_at2(file)
       type(text_file), intent(inout) :: file
       integer :: first, last, i
@@ -385,7 +391,7 @@ contains
    !> tabs separates two fields.
    subroutine split(line, first, separator, fields)
       character(len=*), intent(in) :: line
-      !> Where the line begins in the text, which ends with it
+      !> Where the line begins in the text `line`, which ends with the line
       integer, intent(in) :: first
       character(len=1), intent(in) :: separator
       type(field_list), intent(out) :: fields
@@ -409,6 +415,7 @@ contains
          call trim_field(line, fields%first(fields%count), fields%last(fields%count))
          if (stop_at == 0) exit
          at = at + stop_at
+         ! The line ends with a separator: an empty field follows.
          if (at > last .and. separator /= ' ') then
             fields%count = min(fields%count + 1, most_columns + 1)
             fields%first(fields%count) = last + 1
@@ -422,6 +429,7 @@ contains
    pure integer function end_of_field(line, separator) result(at)
       character(len=*), intent(in) :: line
       character(len=1), intent(in) :: separator
+      !> Position of the opening quote, then of the closing one
       integer :: quote
 
       at = index(line, separator)
@@ -434,9 +442,11 @@ contains
       if (at > 0) at = at + quote
    end function end_of_field
 
-   !> Remove the blanks around a field, and quotes that enclose it.
+   !> Remove the blanks around a field, and quotes that enclose it; a second pass removes blanks within the
+   !> quotes.
    pure subroutine trim_field(line, first, last)
       character(len=*), intent(in) :: line
+      !> First and last character of the field in the line
       integer, intent(inout) :: first, last
       integer :: pass
 
@@ -450,6 +460,7 @@ contains
       end do
    end subroutine trim_field
 
+   !> Whether a line has nothing but blanks, or is a comment.
    logical function is_blank(line)
       character(len=*), intent(in) :: line
       integer :: at

@@ -21,7 +21,7 @@ contains
       type(loading_record), intent(in) :: spec
       !> Folder that a relative path starts from, with a slash at its end, or empty
       character(len=*), intent(in) :: folder
-      !> Whether times are needed
+      !> Whether the analysis is in time, so that times are needed
       logical, intent(in) :: dynamic
       !> Whether a force with times is refused, because the user has not chosen between statics and dynamics
       logical, intent(in) :: refuse_times
@@ -114,7 +114,7 @@ contains
    !> Read the displacements [m] and forces [N] of a measured test.
    subroutine read_test(path, units, name, values, error)
       character(len=*), intent(in) :: path
-      !> Units of displacement and force; blank: units of the file, see `convert`
+      !> Units of displacement and force; blank: the unit in the name of the column, else SI
       character(len=*), intent(in) :: units(2)
       !> Name of the test; not allocated if it cannot be read
       character(len=:), allocatable, intent(out) :: name
@@ -132,6 +132,7 @@ contains
          return
       end if
       allocate (values(history%rows, 2))
+      ! Else `find_column` would take the one column beside a time for the displacement and for the force too.
       if (history%columns == 2 .and. is_time(history%labels(1))) history%labels(1) = 'a time'
       do i = 1, 2
          call find_column(history, path, drives(i), '', 'column', column, error)
@@ -145,11 +146,13 @@ contains
       name = history%name
    end subroutine read_test
 
-   !> The column with the name or number that the user gives, or else with the name of the drive.
+   !> The column with the name or number that the user gives; without one the column that is named after the
+   !> drive, or the only column beside a time.
    subroutine find_column(history, path, drive, word, key, column, error)
       type(history_type), intent(in) :: history
+      !> Path of the file, for messages; what is driven; name or number of the column, or blank
       character(len=*), intent(in) :: path, drive, word
-      !> Key of the word in the input
+      !> Key under which the user gives the word, for messages
       character(len=*), intent(in) :: key
       integer, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
@@ -192,10 +195,11 @@ contains
       end if
    end subroutine find_column
 
-   !> Convert values to SI from the unit that the user gives, else from the unit in the column's name, else
-   !> from the units of PEER files; other values are in SI.
+   !> Convert values to SI from the unit that the user gives, else from the unit in the column's name (a PEER
+   !> file is given such names); other values are in SI.
    subroutine convert(history, path, column, drive, unit, value, error)
       type(history_type), intent(in) :: history
+      !> Path of the file, for messages; what is driven; unit that the user gives, or blank
       character(len=*), intent(in) :: path, drive, unit
       integer, intent(in) :: column
       real(wp), intent(inout) :: value(:)
@@ -208,6 +212,7 @@ contains
 
       allocate (units, source=units_of(drive))
       name = unit
+      ! A unit that a comment states is not read: refused, unless the user gives a unit that agrees.
       stated = allocated(history%stated) .and. unit_of(history%labels(column)) == ''
       ! Rates of loading are no units of what is driven.
       if (stated) stated = index(drive, 'acceleration') > 0 .or. index(lower(history%stated), 'unit') > 0
@@ -231,7 +236,8 @@ contains
       end if
    end subroutine convert
 
-   !> Whether a comment has a unit; that of a single letter stands in brackets.
+   !> Whether a comment names a unit; a unit of a single letter counts only in brackets: [g] or (g). Both are
+   !> in lower case.
    pure logical function agrees(comment, unit)
       character(len=*), intent(in) :: comment, unit
 
@@ -244,7 +250,9 @@ contains
    subroutine check_range(value, path, column, largest, error)
       real(wp), intent(in) :: value(:)
       character(len=*), intent(in) :: path
+      !> Number of the column, for the message
       integer, intent(in) :: column
+      !> Largest size that is accepted
       real(wp), intent(in) :: largest
       type(error_type), allocatable, intent(out) :: error
       integer :: i
@@ -255,7 +263,7 @@ contains
                        to_text(value(i))//', is outside the range of the arithmetic; correct the file')
    end subroutine check_range
 
-   !> The unit at the end of a column's name: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`.
+   !> The unit at the end of a column's name: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`; blank without one.
    pure function unit_of(label) result(unit)
       character(len=*), intent(in) :: label
       character(len=len(label)) :: unit

@@ -68,6 +68,7 @@ contains
                if ((scanned%group(i)%name == 'units') .eqv. (pass == 1)) call put_group(scanned%group(i))
             end do
          end do
+         ! A frame needs none of the groups of a column.
          if (allocated(reader%case%frame)) return
          do i = 1, size(required)
             if (any(scanned%group(:scanned%groups)%name == required(i))) cycle
@@ -138,7 +139,8 @@ contains
          end associate
       end subroutine check_twice
 
-      !> Read the values of an entry, which must be of the kind of the key and not too many.
+      !> Read the values of an entry, and add a message if one is not of the kind of the key, or if they are
+      !> too many.
       subroutine read_values(entry, key, number, text)
          type(nml_entry), intent(in) :: entry
          type(key_type), intent(in) :: key
@@ -161,6 +163,7 @@ contains
                end if
                if (i == entry%first .and. is_text(key)) call unquote(word, text)
             end associate
+            ! 3*0.5 stands for three values; those beyond the room for the key are counted, not stored.
             times = min(scanned%word(i)%times, size(number) - total)
             number(total + 1:total + times) = value
             total = total + times
@@ -226,11 +229,13 @@ contains
 
    !> The value of a word, or the reason why it is refused.
    subroutine read_value(word, kind, value, what)
+      !> As it stands in the file, with its quotes
       character(len=*), intent(in) :: word
+      !> Kind of the key, see `rbs_base_keys`
       character(len=1), intent(in) :: kind
       !> A logical as 0 or 1; 0 for a text
       real(wp), intent(out) :: value
-      !> Not allocated if the value is valid
+      !> The reason, as the end of a message; not allocated if the value is valid
       character(len=:), allocatable, intent(out) :: what
       integer :: status, first
       logical :: quoted
@@ -265,7 +270,7 @@ contains
          else
             call read_real(word, value, status)
          end if
-      case default
+      case default                                       ! logical_kind
          select case (lower(word))
          case ('.true.', 't', 'true')
             value = 1.0_wp

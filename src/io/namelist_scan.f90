@@ -243,9 +243,10 @@ contains
          self%at = self%at + length
       end subroutine scan_subscript
 
-      !> Scan values up to the next name or the end of the group.
+      !> Scan values, separated by blanks or commas, up to the next name or the end of the group.
       subroutine scan_values(entry)
          type(nml_entry), intent(inout) :: entry
+         !> Whether a comma here would leave a value out; also true before the first value
          logical :: after_comma
 
          after_comma = .true.
@@ -266,6 +267,7 @@ contains
             self%words = self%words + 1
             call scan_word(trim(entry%name), self%word(self%words))
             if (self%failed) return
+            ! The sum of many repeats must not overflow.
             entry%total = min(entry%total, huge(1) - most_repeats) + self%word(self%words)%times
             after_comma = .false.
          end do
@@ -273,7 +275,7 @@ contains
          if (entry%last < entry%first) call complain("'"//trim(entry%name)//"' has no value")
       end subroutine scan_values
 
-      !> Scan one value: a quoted text or a word, perhaps with a repeat count.
+      !> Scan one value: a quoted text or a word, perhaps with a repeat count as in 3*0.5.
       subroutine scan_word(name, word)
          character(len=*), intent(in) :: name
          type(nml_word), intent(out) :: word
@@ -306,7 +308,8 @@ contains
          word%last = self%at - 1
       end subroutine scan_word
 
-      !> Length of a quoted text with its quotes; a quote within is doubled. 0 if the text is not closed.
+      !> Length of the quoted text, with its quotes, that a text begins with; a quote within it is doubled. 0
+      !> if it is not closed.
       pure integer function quoted_length(text) result(length)
          character(len=*), intent(in) :: text
          integer :: mark
@@ -340,7 +343,8 @@ contains
          group_begins = letter() == '&' .and. run_of(self%at + 1, name_set) > 0
       end function group_begins
 
-      !> Take a name, in lower case; blank if the next character cannot begin one.
+      !> Take a name, in lower case; blank if the next character cannot begin one. A name that is too long is
+      !> cut, and then fits no key.
       subroutine take_name(name)
          character(len=32), intent(out) :: name
          integer :: length
@@ -350,6 +354,7 @@ contains
          self%at = self%at + length
       end subroutine take_name
 
+      !> Go beyond all characters of a set that come next.
       subroutine skip(set)
          character(len=*), intent(in) :: set
 
@@ -372,8 +377,9 @@ contains
          if (self%at <= len(self%text)) letter = self%text(self%at:self%at)
       end function letter
 
-      !> Report an error of syntax at the present position.
+      !> Report an error of syntax at the present position, and set `failed`, which ends the scan.
       subroutine complain(what, after_word)
+         !> The error, as the end of the message
          character(len=*), intent(in) :: what
          !> Whether the message begins with the word at the present position
          logical, intent(in), optional :: after_word

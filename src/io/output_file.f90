@@ -87,6 +87,7 @@ contains
                              'file with --output')
          end if
       else if (exists(path)) then
+         ! A file that is protected from writing is refused, although another could be renamed onto it.
          stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
          if (c_associated(stream)) then
             status = c_fclose(stream)
@@ -100,7 +101,8 @@ contains
       end if
    end subroutine open_file
 
-   !> Open the file under its own name.
+   !> Open the file under a name of its own, PATH.i.partial with the first i that is free, and lock it. An
+   !> earlier file of this kind that no process has locked is reported in `left`.
    subroutine open_own(self, error)
       class(output_file), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
@@ -108,10 +110,12 @@ contains
       integer(c_int) :: descriptor, status
 
       slash = index(self%path, '/', back=.true.)
+      ! No try if the final name is longer than a disk takes.
       do i = 1, merge(most_tries, 0, len(self%path) - slash <= longest_name)
          self%own = self%path(:min(len(self%path), slash + longest_start))//'.'//to_text(i)//partial
          self%stream = c_fopen(self%own//c_null_char, 'wx'//c_null_char)
          if (c_associated(self%stream)) exit
+         ! The name is free: the folder is at fault.
          if (.not. is_taken(self%own)) exit
          if (is_ours(self%own)) then
             ! A run that is under way has the lock of its file.
@@ -154,7 +158,7 @@ contains
       end do
    end subroutine put
 
-   !> Write what is in the buffer.
+   !> Write what is in the buffer; after a failure the file is broken and takes nothing any more.
    subroutine flush_buffer(self, error)
       class(output_file), intent(inout) :: self
       type(error_type), allocatable, intent(inout) :: error
@@ -172,6 +176,7 @@ contains
             failures = 0
          else
             failures = failures + 1
+            ! A write that fails on a disk is not tried again.
             self%broken = self%own /= '' .or. failures == most_tries
             if (self%broken) exit
             ! The reader of a pipe takes its time.
@@ -234,8 +239,8 @@ contains
       end if
    end subroutine close_file
 
-   !> Name of the rows of a run that does not come to its end: PATH.partial if this is free or has been left
-   !> by an earlier run, else its own.
+   !> Name under which the rows of a run are kept that does not come to its end: PATH.partial if this is free
+   !> or has been left by an earlier run, else the name that the file has now.
    subroutine get_partial_name(self, name)
       class(output_file), intent(in) :: self
       character(len=:), allocatable, intent(out) :: name
@@ -247,7 +252,7 @@ contains
       if (self%own == '' .or. .not. free) name = self%own
    end subroutine get_partial_name
 
-   !> Whether a path is an ordinary file that a run has left.
+   !> Whether a path is an ordinary file that a run has left, by its first words.
    logical function is_ours(path)
       character(len=*), intent(in) :: path
       character(len=len(first_words)) :: words

@@ -178,7 +178,8 @@ contains
       integer(c_int) :: status
 
       is_special = .false.
-      ! Opened for update, which neither truncates a file nor waits for the other end of a pipe.
+      ! Only a file on a disk can be written through (fsync). It is opened for update, which neither truncates
+      ! a file nor waits for the other end of a pipe.
       stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
       if (.not. c_associated(stream)) return
       status = c_fsync(c_fileno(stream))
@@ -198,6 +199,7 @@ contains
       same_file = .false.
       if (.not. c_associated(c_realpath(a//c_null_char, real_a))) return
       if (.not. c_associated(c_realpath(b//c_null_char, real_b))) return
+      ! Up to the end of the first path, with the null character behind it.
       same_file = all(real_a(:findloc(real_a, c_null_char, dim=1)) == &
                       real_b(:findloc(real_a, c_null_char, dim=1)))
    end function same_file
@@ -210,7 +212,7 @@ contains
                            path == '/proc/self/fd/1'
    end function is_standard_output
 
-   !> The path of standard input, of which `-` is short.
+   !> A path; `-` becomes the path of standard input.
    pure function standard_input(path) result(long)
       character(len=*), intent(in) :: path
       character(len=length_of(path)) :: long

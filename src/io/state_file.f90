@@ -21,6 +21,7 @@ contains
    !> Read the numbers of a state.
    subroutine read_state(path, stream, error)
       character(len=*), intent(in) :: path
+      !> Takes the numbers; `restore` of an object is left to the caller
       type(stream_type), intent(inout) :: stream
       type(error_type), allocatable, intent(out) :: error
       integer :: unit, status

@@ -70,6 +70,7 @@ contains
       call read_all()
       status = c_close(descriptor)
       if (allocated(error)) return
+      ! The mark at the start of a file in UTF-8 is no text.
       if (len(file%text) >= 3) then
          if (file%text(:3) == char(239)//char(187)//char(191)) file%text = file%text(4:)
       end if
@@ -77,7 +78,8 @@ contains
 
    contains
 
-      !> Read from a descriptor to the end.
+      !> Read from the descriptor to the end into `file%text`. Where its room is full, one byte more shows
+      !> whether the text goes on, and the room is doubled.
       subroutine read_all()
          character(len=:), allocatable :: longer
          character(len=1) :: one
@@ -129,7 +131,7 @@ contains
          end if
       end subroutine read_all
 
-      !> Why a path cannot be opened.
+      !> Report why a path cannot be opened.
       subroutine report_open()
          character(len=256) :: message
          integer :: unit, status, reason
@@ -201,6 +203,7 @@ contains
       found = first <= len(self%text)
       last = first - 1
       if (.not. found) return
+      ! Most lines are short; only a longer one is searched for its end in the whole text.
       length = scan(self%text(first:min(first + 4095, len(self%text))), lf//cr)
       if (length == 0) length = scan(self%text(first:), lf//cr)
       self%line = self%line + 1
@@ -246,6 +249,8 @@ contains
       integer, intent(out) :: status
       integer(int64) :: mantissa
       integer :: i, digit, digits, power, exponent, sign_of_power, first, ios
+      !> Whether a point and an exponent have begun; whether the mantissa has all digits; whether the program
+      !> stops on overflow
       logical :: point, in_exponent, exact, stops
       character(len=12) :: form
 

@@ -45,6 +45,7 @@ contains
       type(laws_type), intent(in) :: laws
       !> Compression positive [N]
       real(wp), intent(in) :: axial_load
+      !> Equilibrium without curvature
       type(state_type), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
       type(resultants_type) :: least, most
@@ -70,10 +71,11 @@ contains
    subroutine advance(section, laws, axial_load, curvature, state, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> [N]; [1/m]
+      !> Axial load, compression positive [N]; curvature [1/m]
       real(wp), intent(in) :: axial_load, curvature
       !> Moves to `curvature`, or to the last one at which the section carries the axial load
       type(state_type), intent(inout) :: state
+      !> Whether the section carries the axial load up to `curvature`
       logical, intent(out) :: found
       type(state_type) :: next
       integer :: steps, i
@@ -94,8 +96,8 @@ contains
 
    contains
 
-      !> Equilibrium at next%curvature, starting from `last`: Newton's method from the extrapolated strain; if
-      !> it does not converge nearby, the search of `settle`.
+      !> Set `next` to equilibrium at next%curvature, starting from `last`: Newton's method from the
+      !> extrapolated strain; if it does not converge nearby, the search of `settle`. Sets `found`.
       subroutine find_strain(last)
          type(state_type), intent(in) :: last
          type(resultants_type) :: sums
@@ -164,7 +166,9 @@ contains
    subroutine settle(section, laws, axial_load, curvature, state, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
+      !> Axial load, compression positive [N]; curvature [1/m]
       real(wp), intent(in) :: axial_load, curvature
+      !> On return its strain, curvature and moment are those of the equilibrium, if there is one
       type(state_type), intent(inout) :: state
       logical, intent(out) :: found
       type(resultants_type) :: current, trial
@@ -177,6 +181,7 @@ contains
       state%moment = current%m
       if (abs(current%n - axial_load) <= tolerance*force_scale(section)) return
       direction = sign(1.0_wp, axial_load - current%n)
+      ! The search ends where the section is crushed or its last bar has broken.
       furthest = crushed
       if (direction < 0.0_wp) furthest = largest_opening(section)
       furthest = furthest + abs(curvature)*section%shape%depth
@@ -197,7 +202,8 @@ contains
 
    contains
 
-      !> Equilibrium between two strains with residuals of opposite sign: the Illinois form of regula falsi,
+      !> Set `state` to equilibrium between two strains with residuals of opposite sign: the Illinois form of
+      !> regula falsi,
       !> with a bisection at every third step. Where the force jumps because a bar breaks, equilibrium lies
       !> within the jump.
       subroutine close_in(first, at_first, second, at_second)
@@ -226,6 +232,7 @@ contains
                return
             end if
             if ((sums%n - axial_load)*(b_sums%n - axial_load) > 0.0_wp) then
+               ! A strain that stays twice counts half, so that the secant moves it too.
                if (kept > 0) weight_a = 0.5_wp*weight_a
                kept = 1
                b = at
@@ -240,6 +247,7 @@ contains
             end if
             if (abs(b - a) <= 4.0_wp*spacing(max(abs(a), abs(b)))) exit
          end do
+         ! No strain between the two is left: the axial load lies within the jump, and so does the moment.
          share = (axial_load - a_sums%n)/(b_sums%n - a_sums%n)
          state%eps0 = b
          state%moment = a_sums%m + share*(b_sums%m - a_sums%m)
@@ -255,12 +263,13 @@ contains
       if (size(section%steels) > 0) largest_opening = maxval(section%steels%eps_u)
    end function largest_opening
 
-   !> The section without curvature under its least (tension) and largest (compression) axial force.
+   !> The section without curvature under its least (tension) and largest (compression) axial force, from a
+   !> march over strains up to crushing and to the rupture of the last bar.
    subroutine axial_capacity(section, laws, least, most, strain)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
       type(resultants_type), intent(out) :: least, most
-      !> Strains at which it carries them, compression positive
+      !> Strains at which the section carries the least and the largest force, compression positive
       real(wp), intent(out) :: strain(2)
       type(resultants_type) :: sums
       real(wp) :: at

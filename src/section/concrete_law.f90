@@ -102,6 +102,7 @@ contains
    !> The same concrete as cover that spalls: from 2 eps_0 on a straight line to zero stress at eps_spall.
    elemental type(concrete_type) function spalling_concrete(plain, eps_spall) result(law)
       type(concrete_type), intent(in) :: plain
+      !> Strain at which the cover has spalled; the line begins at three quarters of it at the latest
       real(wp), intent(in) :: eps_spall
 
       law = plain
@@ -130,7 +131,7 @@ contains
       type(concrete_type), intent(in) :: law
       !> Compression positive
       real(wp), intent(in) :: strain
-      !> [Pa]
+      !> Stress, compression positive, and its slope by the strain [Pa]
       real(wp), intent(out) :: stress, tangent
 
       if (strain <= 0.0_wp) then
@@ -138,6 +139,7 @@ contains
       else if (strain <= law%eps_line) then
          call in_compression(law, strain, stress, tangent)
       else if (strain < law%eps_spall) then
+         ! The cover spalls: a straight line from the stress at eps_line to zero.
          call in_compression(law, law%eps_line, stress, tangent)
          tangent = -stress/(law%eps_spall - law%eps_line)
          stress = -tangent*(law%eps_spall - strain)
@@ -147,7 +149,7 @@ contains
       end if
    end subroutine concrete_both
 
-   !> Stress and tangent of the curve of compression.
+   !> Stress and tangent [Pa] of the curve of compression at a strain above zero.
    pure subroutine in_compression(law, strain, stress, tangent)
       type(concrete_type), intent(in) :: law
       real(wp), intent(in) :: strain
@@ -163,9 +165,10 @@ contains
       tangent = law%fc*law%n*(law%n - 1.0_wp + (1.0_wp - exponent)*power)*below**2/law%eps0
    end subroutine in_compression
 
-   !> `opening` is the strain, tension positive.
+   !> Stress, compression positive and so not above zero here, and tangent [Pa] in tension.
    pure subroutine in_tension(law, opening, stress, tangent)
       type(concrete_type), intent(in) :: law
+      !> Strain, tension positive, not below zero
       real(wp), intent(in) :: opening
       real(wp), intent(out) :: stress, tangent
       real(wp) :: root

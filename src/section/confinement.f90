@@ -77,7 +77,7 @@ contains
       hoop_area = 0.25_wp*pi*transverse%diameter**2
    end function hoop_area
 
-   !> The effective lateral stress as the hoops yield.
+   !> The effective lateral stress as the hoops yield; zero without hoops or without a core.
    pure type(confinement_type) function confinement_of(core, form) result(confinement)
       type(hooped_core), intent(in) :: core
       type(confinement_form), intent(in) :: form
@@ -94,6 +94,7 @@ contains
          if (t%kind == ties .and. form%weaker) ratio = 2.0_wp*min(along, across)
       end associate
       confinement%ratio = ratio
+      ! Around a void nothing is confined, but the ratio of the hoops is that of a section.
       if (core%hollow) return
       confinement%effectiveness = effectiveness(core, form)
       confinement%stress = 0.5_wp*confinement%effectiveness*ratio*core%hoops%steel%fy
@@ -103,6 +104,7 @@ contains
    pure real(wp) function effectiveness(core, form) result(k_e)
       type(hooped_core), intent(in) :: core
       type(confinement_form), intent(in) :: form
+      !> Clear distance of the hoops [m]; share of depth and width left by the arches between them
       real(wp) :: clear, part, area, across
 
       area = core%width*core%depth

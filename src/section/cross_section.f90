@@ -71,6 +71,7 @@ contains
 
       as_round = any(section%transverse%kind == [spiral, circular_hoops])
       if (present(round)) as_round = as_round .or. round
+      ! The cover goes to the outer edge of the hoops: from face to centre line half a bar more, on two sides.
       associate (t => section%transverse, outline => section%shape)
          if (.not. outline%walled) then
             call new_core(outline, as_round, 2.0_wp*section%side_cover + t%diameter, &
@@ -80,6 +81,7 @@ contains
          section%core_shape = shape_type(0.0_wp, outline%depth, walled=.true.)
          do side = 1, 2
             if (section%boundary(side)%kind == no_ties) cycle
+            ! Across the wall the cover is on both sides; along it on the outer one alone.
             less = 2.0_wp*section%cover + section%boundary(side)%diameter
             associate (core => section%core_shape)
                core%end_width(side) = outline%end_width(side) - less
@@ -90,9 +92,10 @@ contains
       end associate
    end subroutine enclose_core
 
-   !> The core at y < 0 or y > 0, with the hoops that confine it.
+   !> The core with the hoops that confine it; of a wall that of one boundary element.
    pure type(hooped_core) function hooped_core_of(section, side) result(core)
       type(section_type), intent(in) :: section
+      !> 1: at y < 0, 2: at y > 0
       integer, intent(in) :: side
 
       core%hoops = section%transverse
@@ -114,7 +117,7 @@ contains
       core%bar_area = sum(section%bar_area, section%bar_in_core .and. side_of(section%bar_y) == side)
    end function hooped_core_of
 
-   !> Cut into `count` strips of equal height.
+   !> Cut an outline, and the core in it, into `count` strips of equal height.
    pure subroutine cut_strips(outline, core, count, strips)
       type(shape_type), intent(in) :: outline, core
       integer, intent(in) :: count
@@ -129,9 +132,9 @@ contains
       strips%core_area = min(core%area_between(low, high), strips%area)
    end subroutine cut_strips
 
-   !> Strips of a hinge: centroid [m] and area [m2] of the core, then of the cover, a row of four for each.
-   !> Edges of boundaries of a wall that have hoops or wings are edges of strips. Without a core, or a cover,
-   !> the centroid is the middle of the strip.
+   !> Strips of a hinge, a column of four numbers for each: centroid [m] and area [m2] of its core, then of
+   !> its cover. Where a boundary of a wall with hoops or wings ends, a strip ends too. The centroid of a core
+   !> or cover without area is the middle of the strip.
    pure function strip_centroids(section, count) result(rows)
       type(section_type), intent(in) :: section
       !> Number of strips of equal height, before those edges cut them
@@ -146,6 +149,7 @@ contains
          do side = 1, 2
             if (.not. (section%core_shape%end_length(side) > 0.0_wp .or. &
                        section%shape%end_width(side) > section%shape%width)) cycle
+            ! The sign is that of the side: 1 is at y < 0.
             call cut_at(low, high, sign(0.5_wp*section%shape%depth - section%shape%end_length(side), &
                                         side - 1.5_wp))
          end do
@@ -164,10 +168,11 @@ contains
       where (area - core > 0.0_wp) rows(3, :) = (moment - core_moment)/(area - core)
    end function strip_centroids
 
-   !> Cut the strip that contains a place in two there.
+   !> Cut the strip that contains a place in two there, unless the place is on an edge.
    pure subroutine cut_at(low, high, place)
+      !> Lower and upper edges of the strips, ascending [m]; one element is added
       real(wp), allocatable, intent(inout) :: low(:), high(:)
-      !> [m]
+      !> Distance from mid-depth [m]
       real(wp), intent(in) :: place
       real(wp) :: least
       integer :: i

@@ -83,6 +83,7 @@ module rbs_section_events
 
 contains
 
+   !> Present the keys of a diagram to a visitor.
    subroutine visit(self, v)
       class(diagram_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -93,6 +94,7 @@ contains
       call self%visit_points(v)
    end subroutine visit
 
+   !> Present the keys that a diagram and the fit of a spring share.
    subroutine visit_points(self, v)
       class(points_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -108,6 +110,7 @@ contains
    !> The rules of the named points; the words must be known.
    pure type(rule_type) function rule(self, yielding)
       class(points_record), intent(in) :: self
+      !> 'first'; any other word is the rule `yield_tension`
       character(len=*), intent(in) :: yielding
 
       rule = rule_type(merge(yield_first, yield_tension, yielding == 'first'), &
@@ -145,6 +148,7 @@ contains
             events%lost = .true.
             exit
          end if
+         ! The step before raised the moment and this one lowers it: the peak lies within these two.
          if (in_peak .and. current%moment < events%peak%moment) then
             call refine_peak(before_peak, current%curvature, events%peak)
          end if
@@ -172,8 +176,11 @@ contains
 
    contains
 
+      !> Locate a point within the last step, unless it has been found or has not been passed.
       subroutine catch(what, level, point)
+         !> One of the kinds `seek_cracking` to `seek_moment`
          integer, intent(in) :: what
+         !> Level of the moment for `seek_drop` [N m]; the other kinds do not use it
          real(wp), intent(in) :: level
          type(point_type), intent(inout) :: point
 
@@ -182,7 +189,7 @@ contains
          call locate(section, laws, axial_load, rule, what, level, last, current, point)
       end subroutine catch
 
-      !> Golden-section search, as the diagram may have a corner at its peak.
+      !> Golden-section search for the peak between two curvatures, as the diagram may have a corner there.
       subroutine refine_peak(first, end, peak)
          !> The state before the largest moment of the march, and the curvature after it [1/m]
          type(state_type), intent(in) :: first
@@ -225,12 +232,14 @@ contains
 
    end subroutine find_events
 
-   !> The first point of the diagram at which the moment reaches a level.
+   !> The first point of the diagram at which the moment reaches a level; not found if the diagram ends
+   !> before.
    subroutine reach_moment(section, laws, axial_load, moment, point, error)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
+      !> Compression positive [N]
       real(wp), intent(in) :: axial_load
-      !> [N m]
+      !> The level [N m]
       real(wp), intent(in) :: moment
       type(point_type), intent(out) :: point
       type(error_type), allocatable, intent(out) :: error
@@ -252,8 +261,10 @@ contains
       call locate(section, laws, axial_load, rule_type(), seek_moment, moment, last, current, point)
    end subroutine reach_moment
 
+   !> Step of the march from a curvature [1/m].
    elemental real(wp) function step_of(section, curvature)
       type(section_type), intent(in) :: section
+      !> [1/m]
       real(wp), intent(in) :: curvature
 
       step_of = first_step/section%shape%depth + growth*curvature
@@ -264,6 +275,7 @@ contains
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
       type(rule_type), intent(in) :: rule
+      !> One of the kinds `seek_cracking` to `seek_moment`
       integer, intent(in) :: what
       !> Level of the moment for `seek_drop` and `seek_moment` [N m]
       real(wp), intent(in) :: level
@@ -283,7 +295,7 @@ contains
          beyond = 1.0_wp - state%moment/level
       case (seek_moment)
          beyond = state%moment/level - 1.0_wp
-      case default
+      case default                                       ! seek_ultimate
          select case (rule%ultimate)
          case (ultimate_mander)
             core_edge = state%eps0 + state%curvature*(0.5_wp*section%core_shape%depth - &
@@ -291,13 +303,13 @@ contains
             beyond = core_edge/section%core(1)%eps_cu - 1.0_wp
          case (ultimate_steel)
             beyond = bar_ratio(section, state, at_rupture=.true.) - 1.0_wp
-         case default
+         case default                                    ! ultimate_cover; `ultimate_drop` is sought as a drop
             beyond = compressed(section, state)/rule%eps_cover - 1.0_wp
          end select
       end select
    end function beyond
 
-   !> Strain of the extreme fibre in compression.
+   !> Strain of the extreme fibre in compression, at y = -depth/2, compression positive.
    elemental real(wp) function compressed(section, state)
       type(section_type), intent(in) :: section
       type(state_type), intent(in) :: state
@@ -305,7 +317,8 @@ contains
       compressed = state%eps0 + 0.5_wp*state%curvature*section%shape%depth
    end function compressed
 
-   !> Largest tensile strain of the bars over that of yield or of rupture; -1 without bars.
+   !> Largest of the tensile strains of the bars, each over its strain at yield or at rupture; not below -1,
+   !> the value without bars.
    pure real(wp) function bar_ratio(section, state, at_rupture)
       type(section_type), intent(in) :: section
       type(state_type), intent(in) :: state
@@ -328,8 +341,10 @@ contains
       type(laws_type), intent(in) :: laws
       real(wp), intent(in) :: axial_load
       type(rule_type), intent(in) :: rule
+      !> Kind of point, and level of the moment, as in `beyond`
       integer, intent(in) :: what
       real(wp), intent(in) :: level
+      !> States before and behind the point
       type(state_type), intent(in) :: first, second
       type(point_type), intent(out) :: point
       type(state_type) :: low, high, current
@@ -370,6 +385,7 @@ contains
       point = as_point(low)
    end subroutine locate
 
+   !> A state as a point of the diagram that has been found.
    elemental type(point_type) function as_point(state)
       type(state_type), intent(in) :: state
 
@@ -379,6 +395,7 @@ contains
    !> Add a message for every rule that does not apply to the section.
    subroutine check_rules(section, confined, rule, messages)
       type(section_type), intent(in) :: section
+      !> Whether the diagram has a confined core
       logical, intent(in) :: confined
       type(rule_type), intent(in) :: rule
       type(message_list), intent(inout) :: messages

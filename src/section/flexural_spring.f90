@@ -56,6 +56,7 @@ module rbs_section_flexural_spring
 
 contains
 
+   !> Present the keys to a visitor.
    subroutine visit(self, v)
       class(hinge_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -73,7 +74,7 @@ contains
                  optional=.true.)
    end subroutine visit
 
-   !> Fit the spring.
+   !> Fit the trilinear spring to the diagram of a section.
    subroutine fit_flexural_spring(section, hinge, spring, error)
       type(section_type), intent(in) :: section
       type(hinge_record), intent(in) :: hinge
@@ -106,7 +107,7 @@ contains
 
    contains
 
-      !> The three points must exist, in this order.
+      !> Set `error` unless cracking, yield and ultimate point exist, in this order.
       subroutine check_points(axial_load)
          real(wp), intent(in) :: axial_load
 
@@ -136,8 +137,10 @@ contains
          end if
       end subroutine check_points
 
-      !> The line through the three points, in rotations.
+      !> The line through the three points, in rotations: sets `spring`, or `error` if its slopes do not
+      !> fall.
       subroutine draw_line()
+         !> Moments at cracking, yield and the ultimate point [N m]; length of the hinge [m]
          real(wp) :: m_c, m_y, m_u, l_p
 
          l_p = hinge%hinge_length

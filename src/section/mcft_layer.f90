@@ -71,20 +71,23 @@ contains
       slope = -170.0_wp*factor**2
    end subroutine crack_softening
 
-   !> Stresses of the two principal strains, tension positive, and their slopes.
+   !> Stresses of the two principal strains, tension positive, and their slopes [Pa].
    pure subroutine principal_stresses(concrete, eps_1, eps_2, f_1, f_2, f11, f22, f21)
       type(concrete_type), intent(in) :: concrete
+      !> Larger and smaller principal strain, tension positive
       real(wp), intent(in) :: eps_1, eps_2
       real(wp), intent(out) :: f_1, f_2
       !> Slopes: of f_1 by eps_1, of f_2 by eps_2 and by eps_1
       real(wp), intent(out) :: f11, f22, f21
       real(wp) :: factor, slope
 
+      ! The law of the concrete takes compression as positive.
       call concrete_both(concrete, -eps_1, f_1, f11)
       call concrete_both(concrete, -eps_2, f_2, f22)
       f_1 = -f_1
       f_2 = -f_2
       f21 = 0.0_wp
+      ! Only compression is softened by cracks.
       if (eps_2 >= 0.0_wp) return
       call crack_softening(concrete%ft/concrete%ec, eps_1, factor, slope)
       f21 = slope*f_2
@@ -117,6 +120,7 @@ contains
       stress%tau = 0.5_wp*(f_1 - f_2)*s
 
       ! The stresses rotate with the strains: tau_12 = (f_1 - f_2)/(2 (eps_1 - eps_2)) gamma_12.
+      ! That quotient is g; where both strains are equal its limit is taken.
       if (radius > 1.0e-12_wp) then
          g = 0.25_wp*(f_1 - f_2)/radius
       else
@@ -140,6 +144,7 @@ contains
       type(layer_state) :: trial
 
       trial = state
+      ! All is done for tau >= 0. A change of sign begins at the virgin layer.
       if (tau < 0.0_wp .neqv. state%tau < 0.0_wp) trial = layer_state()
       trial%gamma = abs(trial%gamma)
       trial%tau = abs(trial%tau)
@@ -157,7 +162,9 @@ contains
       !> Newton's method; a step that does not reduce the residual is halved. A state at which the stress
       !> falls with the strain is not accepted. Without success the state is unchanged.
       pure subroutine iterate(eps_x, tau, state, found)
+         !> Longitudinal strain, tension positive; shear stress, not negative [Pa]
          real(wp), intent(in) :: eps_x, tau
+         !> State to start from, replaced by the one found
          type(layer_state), intent(inout) :: state
          logical, intent(out) :: found
          type(layer_stress) :: stress, ahead
@@ -195,7 +202,8 @@ contains
          end do
       end subroutine iterate
 
-      !> Newton's method in several steps along a straight path from the previous state.
+      !> Newton's method in several steps along a straight path in (eps_x, tau) from the previous state; a
+      !> step that fails is halved.
       pure subroutine go_in_parts(tau, state, arrived)
          real(wp), intent(in) :: tau
          type(layer_state), intent(inout) :: state
@@ -222,7 +230,8 @@ contains
          end do
       end subroutine go_in_parts
 
-      !> The first state that carries tau as eps_1 increases from the state without shear.
+      !> The first state that carries tau as eps_1 increases from the state without shear; if there is none,
+      !> the state with the largest shear stress.
       pure subroutine search(tau, state, found)
          real(wp), intent(in) :: tau
          type(layer_state), intent(inout) :: state
@@ -251,6 +260,7 @@ contains
 
       !> Halve the interval of eps_1 in which tau is reached; Newton's method gives the last digits.
       pure subroutine close_in(tau, bottom, top, state, found)
+         !> Shear stress [Pa]; ends of the interval of eps_1
          real(wp), intent(in) :: tau, bottom, top
          type(layer_state), intent(inout) :: state
          logical, intent(out) :: found
@@ -285,6 +295,7 @@ contains
       pure subroutine balance(eps_1, eps_2, tau, balanced)
          real(wp), intent(in) :: eps_1
          real(wp), intent(out) :: eps_2, tau
+         !> Whether such a state was found
          logical, intent(out) :: balanced
          real(wp) :: low, high, step, sigma_z
          integer :: i
@@ -314,7 +325,8 @@ contains
       end subroutine balance
    end subroutine solve_layer
 
-   !> Transverse and shear stress of two principal strains around eps_x.
+   !> Transverse and shear stress [Pa] of the layer where eps_x lies between the two principal strains,
+   !> eps_2 <= eps_x <= eps_1, tension positive.
    pure subroutine stress_between(layer, eps_x, eps_1, eps_2, sigma_z, tau)
       type(layer_type), intent(in) :: layer
       real(wp), intent(in) :: eps_x, eps_1, eps_2
@@ -327,7 +339,7 @@ contains
       tau = (f_1 - f_2)*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))/(eps_1 - eps_2)
    end subroutine stress_between
 
-   !> The state of two principal strains around eps_x.
+   !> The state with the principal strains eps_2 <= eps_x <= eps_1 and the shear stress tau [Pa].
    pure type(layer_state) function state_of(eps_x, eps_1, eps_2, tau) result(state)
       real(wp), intent(in) :: eps_x, eps_1, eps_2, tau
 

@@ -30,6 +30,7 @@ contains
       type(section_type), intent(in) :: section
       !> Place of the tension law among `tension_names`
       integer, intent(in) :: tension
+      !> Whether the core is confined and the cover spalls
       logical, intent(in) :: confined
 
       laws%confined = confined
@@ -52,13 +53,14 @@ contains
       real(wp), intent(in) :: eps0, curvature
       real(wp) :: stress, tangent, stress_core(2), tangent_core(2), strain, force, stiffness
       integer :: i, cut, side
+      !> Whether the stresses of shell (0) and cores (1, 2) at the present strain have been found
       logical :: known(0:2)
 
       cut = cut_strip(section, laws, eps0, curvature)
       known = .false.
       do i = 1, size(section%strips%y)
          if (i == cut) cycle
-         ! Without curvature all strips have one strain.
+         ! Without curvature all strips have the same strain, and stresses are found once.
          if (abs(curvature) > 0.0_wp) known = .false.
          strain = eps0 - curvature*section%strips%y(i)
          if (.not. known(0)) call concrete_both(laws%shell, strain, stress, tangent)
@@ -83,7 +85,8 @@ contains
 
    contains
 
-      !> The parts of a strip on both sides of the tip of the crack; core and cover have the same tension law.
+      !> Add the parts of strip i on both sides of the tip of the crack. The law of the cover serves for all,
+      !> as core and cover have the same tension law.
       pure subroutine add_cut_strip(i, sums)
          integer, intent(in) :: i
          type(resultants_type), intent(inout) :: sums
@@ -110,7 +113,7 @@ contains
          sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)
       end subroutine add_cut_strip
 
-      !> The bars, each less the concrete that it takes the place of.
+      !> Add the bars, each less the concrete that it displaces.
       pure subroutine add_bars(sums)
          type(resultants_type), intent(inout) :: sums
          real(wp) :: strain, stress, tangent, displaced, slope, force
@@ -137,6 +140,7 @@ contains
    pure integer function cut_strip(section, laws, eps0, curvature)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
+      !> Strain at mid-depth, compression positive; curvature [1/m]
       real(wp), intent(in) :: eps0, curvature
       real(wp) :: tip
 
@@ -152,12 +156,13 @@ contains
    !> Distance of the tip of the crack, where the strain is that of cracking, from mid-depth [m].
    elemental real(wp) function crack_tip(laws, eps0, curvature)
       type(laws_type), intent(in) :: laws
+      !> Strain at mid-depth, compression positive; curvature, not zero [1/m]
       real(wp), intent(in) :: eps0, curvature
 
       crack_tip = (eps0 + laws%shell%ft/laws%shell%ec)/curvature
    end function crack_tip
 
-   !> Scale of the forces, to which residuals are compared [N].
+   !> Scale of the forces, to which residuals are compared: strength of all concrete and steel [N].
    pure real(wp) function force_scale(section)
       type(section_type), intent(in) :: section
       integer :: i

@@ -41,7 +41,8 @@ module rbs_section_section_build
 
 contains
 
-   !> Validate the record and make the section.
+   !> Validate the record and make the section. Every fault gets a message in `messages`; the section is built
+   !> only without any.
    subroutine make_section(record, section, error)
       type(section_record), intent(inout) :: record
       type(section_type), intent(out) :: section
@@ -68,7 +69,7 @@ contains
 
    contains
 
-      !> Copy the data of a valid record.
+      !> Copy the data of a valid record into the section.
       subroutine take_data()
          integer :: bars, i
 
@@ -108,6 +109,7 @@ contains
          do i = 1, size(record%boundaries)
             associate (given => record%boundaries(i))
                do side = 1, 2
+                  ! Not on this side if the record names the other one; 'both' is none of the two.
                   if (given%side == side_names(3 - side)) cycle
                   section%shape%end_length(side) = given%length
                   if (is_given(given%thickness)) section%shape%end_width(side) = given%thickness
@@ -163,6 +165,7 @@ contains
       section%bar_in_core = abs(section%bar_y) <= 0.5_wp*section%core_shape%depth
       if (section%shape%walled) then
          associate (core => section%core_shape, side => side_of(section%bar_y))
+            ! Within half the length of the core from its middle, which lies inset from the end of the wall.
             section%bar_in_core = abs(abs(section%bar_y) - 0.5_wp*core%depth + core%end_inset(side) + &
                                       0.5_wp*core%end_length(side)) <= 0.5_wp*core%end_length(side)
          end associate
@@ -191,8 +194,10 @@ contains
 
    !> Side by side the legs fill no more than the core and the outer halves of two of them.
    subroutine check_legs(name, hoops, legs, core, messages)
+      !> Group and key, for the message: 'ties: legs'
       character(len=*), intent(in) :: name
       type(transverse_type), intent(in) :: hoops
+      !> Number of legs; size of the core between the centre lines of the outer ones [m]
       real(wp), intent(in) :: legs, core
       type(message_list), intent(inout) :: messages
 
@@ -201,7 +206,7 @@ contains
                         ' m do not fit into a core of '//to_text(core)//' m; give fewer, or thinner ones')
    end subroutine check_legs
 
-   !> Boundary elements fit into the wall, and their hoops into them.
+   !> Check that boundary elements fit into the wall, and their hoops into them.
    subroutine check_wall(section, messages)
       type(section_type), intent(in) :: section
       type(message_list), intent(inout) :: messages
@@ -238,7 +243,7 @@ contains
       end associate
    end subroutine check_wall
 
-   !> In the order of `section_figures`.
+   !> The figures of a section in the order of `section_figures`.
    pure function figures_of_section(section) result(figures)
       type(section_type), intent(in) :: section
       real(wp) :: figures(size(section_figures))
@@ -255,7 +260,7 @@ contains
       end associate
    end function figures_of_section
 
-   !> In the order of `point_values`; found is 1 or 0.
+   !> A point of a diagram in the order of `point_values`; found is 1 or 0.
    pure function values_of_point(point) result(values)
       type(point_type), intent(in) :: point
       real(wp) :: values(size(point_values))
@@ -263,7 +268,7 @@ contains
       values = [point%curvature, point%moment, point%eps0, merge(1.0_wp, 0.0_wp, point%found)]
    end function values_of_point
 
-   !> In the order of `shear_values`.
+   !> A point of a shear diagram in the order of `shear_values`.
    pure function values_of_shear_point(point) result(values)
       type(shear_point), intent(in) :: point
       real(wp) :: values(size(shear_values))
@@ -288,6 +293,7 @@ contains
          associate (ratio => section%confinement(side)%ratio, steel => core%hoops%steel)
             if (.not. ratio > 0.0_wp) cycle
             section%core(side) = confined_concrete(section%plain, section%confinement(side)%stress, 0.0_wp)
+            ! Strain at the first fracture of a hoop (Paulay and Priestley 1992).
             eps_cu = 0.004_wp + 1.4_wp*ratio*steel%fy*steel%eps_u/section%core(side)%fc
             section%core(side)%eps_cu = eps_cu
             section%shell = spalling_concrete(section%plain, eps_spall)

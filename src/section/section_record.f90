@@ -105,6 +105,7 @@ contains
       call v%key('strips', self%strips, '', strip_counts, 'number of strips over the depth')
    end subroutine visit_section
 
+   !> The keys of the bars.
    subroutine visit_bars(self, v)
       class(bars_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -114,6 +115,7 @@ contains
       call v%key('steel', self%steel, '', any_number, 'numbers of their steels', most_bars)
    end subroutine visit_bars
 
+   !> The keys of a boundary element of a wall.
    subroutine visit_boundary(self, v)
       class(boundary_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -134,7 +136,7 @@ contains
       call v%key('steel', self%steel, '', any_number, 'number of the steel of the hoops', optional=.true.)
    end subroutine visit_boundary
 
-   !> Ties have legs to count; a spiral or round hoops have not.
+   !> The keys of hoops. Ties have legs to count; a spiral or round hoops have not.
    subroutine visit_hoops(self, v)
       class(hoops_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -185,6 +187,7 @@ contains
       integer :: i, ends
 
       if (self%shape_name /= 'wall') call messages%add("boundary: it is for shape = 'wall'; remove it")
+      ! Units count the elements at the start of the wall, tens those at its end.
       ends = 0
       do i = 1, size(self%boundaries)
          associate (boundary => self%boundaries(i))
@@ -206,7 +209,8 @@ contains
       end if
    end subroutine check_boundaries
 
-   !> The lists of the bars have one length, and every steel is there.
+   !> Add a message where the lists of the bars differ in length, or bars or hoops name a steel that is not
+   !> there.
    subroutine check_references(self, messages)
       type(section_record), intent(in) :: self
       type(message_list), intent(inout) :: messages
@@ -243,6 +247,7 @@ contains
    !> The message on a key that names a steel which is not there.
    subroutine add_no_steel(messages, key, id)
       type(message_list), intent(inout) :: messages
+      !> Group and key: 'bars: steel(2)'
       character(len=*), intent(in) :: key
       integer, intent(in) :: id
 

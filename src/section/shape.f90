@@ -106,9 +106,10 @@ contains
       end if
    end function wings_of
 
-   !> Where the middle of a flange is [m].
+   !> Distance of the middle of a flange from mid-depth [m].
    elemental real(wp) function middle_of_flange(self, side) result(y)
       type(shape_type), intent(in) :: self
+      !> 1 at the face y = -depth/2, 2 at the other
       integer, intent(in) :: side
       type(shape_type) :: wings
 
@@ -140,9 +141,10 @@ contains
       end do
    end function area_between
 
-   !> Area between two heights of a shape without a void [m2].
+   !> Area between two distances from mid-depth of a rectangle or circle without void and wings [m2].
    elemental real(wp) function solid_area_between(self, lo, hi) result(area)
       type(shape_type), intent(in) :: self
+      !> lo <= hi [m]
       real(wp), intent(in) :: lo, hi
       real(wp) :: radius, a, b
 
@@ -160,6 +162,7 @@ contains
    !> Integral of y times the width between two distances from mid-depth [m3].
    elemental real(wp) function moment_between(self, lo, hi) result(moment)
       class(shape_type), intent(in) :: self
+      !> lo <= hi [m]
       real(wp), intent(in) :: lo, hi
       type(shape_type) :: wings
       real(wp) :: middle
@@ -176,9 +179,11 @@ contains
       end do
    end function moment_between
 
-   !> First moment of this area about mid-depth [m3].
+   !> First moment about mid-depth of a rectangle or circle without void and wings, between two distances from
+   !> mid-depth [m3].
    elemental real(wp) function solid_moment_between(self, lo, hi) result(moment)
       type(shape_type), intent(in) :: self
+      !> lo <= hi [m]
       real(wp), intent(in) :: lo, hi
       real(wp) :: radius, a, b
 
@@ -204,6 +209,7 @@ contains
       if (has_wings(self)) area = area + (solid_area(wings_of(self, 1)) + solid_area(wings_of(self, 2)))
    end function area
 
+   !> Area of the rectangle or circle without void and wings [m2].
    elemental real(wp) function solid_area(self)
       type(shape_type), intent(in) :: self
 
@@ -232,11 +238,13 @@ contains
       do side = 1, 2
          wings = wings_of(self, side)
          middle = middle_of_flange(self, side)
+         ! Over both sides area*middle*(middle - centroid) moves all moments to the centroid.
          second_moment = second_moment + solid_second_moment(wings) + &
                          solid_area(wings)*middle*(middle - self%centroid())
       end do
    end function second_moment
 
+   !> Second moment of the rectangle or circle without void and wings about its middle [m4].
    elemental real(wp) function solid_second_moment(self)
       type(shape_type), intent(in) :: self
 
@@ -281,7 +289,7 @@ contains
    !> Reduce the sizes, not below zero; a void grows as much as the outside moves inwards.
    pure subroutine shrink(self, width_by, depth_by)
       class(shape_type), intent(inout) :: self
-      !> [m]
+      !> Reductions of width and depth, half of each on either side [m]
       real(wp), intent(in) :: width_by, depth_by
 
       self%width = max(0.0_wp, self%width - width_by)
@@ -294,7 +302,7 @@ contains
       self%side_wall = max(0.0_wp, self%side_wall - width_by)
    end subroutine shrink
 
-   !> Show the sizes as keys.
+   !> Present the sizes as keys.
    subroutine visit(self, v)
       class(shape_type), intent(inout) :: self
       type(key_visitor), intent(inout) :: v

@@ -92,6 +92,7 @@ module rbs_section_shear_diagram
 
 contains
 
+   !> The keys of a shear diagram.
    subroutine visit(self, v)
       class(shear_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -131,6 +132,7 @@ contains
          if (sheared .or. lost) then
             diagram%sheared = sheared
             diagram%lost = lost
+            ! The last point that is carried lies between the last curvature and this one.
             here = last
             call halve(curvature(i), 1.0e-4_wp, here)
          end if
@@ -153,7 +155,7 @@ contains
 
    contains
 
-      !> Cut the section into layers and apply its axial load.
+      !> Cut the section into layers (sets `model`) and apply its axial load.
       subroutine prepare(state)
          type(shear_state), intent(out) :: state
          integer :: i
@@ -181,7 +183,7 @@ contains
          call begin_flow(model%flow, state%flexure)
       end subroutine prepare
 
-      !> Bend the section to a larger curvature and solve its layers.
+      !> Bend the section to a larger curvature [1/m] and solve its layers.
       subroutine bend(curvature, state, sheared, lost)
          real(wp), intent(in) :: curvature
          type(shear_state), intent(inout) :: state
@@ -252,9 +254,10 @@ contains
 
    end subroutine follow_shear
 
-   !> Whether the secant is at or below that of the knee.
+   !> Whether the secant V/gamma is at or below that of the knee.
    elemental logical function beyond_knee(point, stiffness)
       type(shear_point), intent(in) :: point
+      !> Secant at the knee [N]
       real(wp), intent(in) :: stiffness
 
       beyond_knee = point%strain > 0.0_wp .and. point%force <= stiffness*point%strain

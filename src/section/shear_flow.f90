@@ -47,6 +47,7 @@ contains
 
    !> Keep the forces of the section before it is bent.
    subroutine begin_flow(flow, state)
+      !> Section, laws and span are set; the forces are set here
       type(flow_type), intent(inout) :: flow
       type(state_type), intent(in) :: state
       real(wp), allocatable :: concrete_force(:), bar_force(:)
@@ -71,10 +72,12 @@ contains
    !> bar is spread over the height of a layer.
    pure subroutine stresses_of_forces(flow, concrete_force, bar_force, tau)
       type(flow_type), intent(in) :: flow
-      !> [N]
+      !> Forces of the bent section (layers), (bars) [N]
       real(wp), intent(in) :: concrete_force(:), bar_force(:)
-      !> [Pa]
+      !> (layers) [Pa]
       real(wp), intent(out) :: tau(:)
+      !> Force that the layers so far have gained by bending, that of the present one [N]; share of a bar
+      !> that lies before the middle of the layer
       real(wp) :: along, gained, share
       integer :: i, j
 
@@ -123,8 +126,8 @@ contains
       end associate
    end subroutine longitudinal_forces
 
-   !> Mean stress of a layer. The layer that contains the tip of the crack has two parts, as in the axial
-   !> force of the section.
+   !> Mean stress of a layer [Pa], compression positive. The layer that contains the tip of the crack has two
+   !> parts, as in the axial force of the section.
    elemental real(wp) function mean_stress(law, strain, fall) result(stress)
       type(concrete_type), intent(in) :: law
       !> Strain in the middle of the layer, and its decrease over the height of the layer
@@ -158,7 +161,7 @@ contains
       end associate
    end function transverse_ratio
 
-   !> Equilibrium at a curvature from the state before.
+   !> Equilibrium of bending and shear together at a curvature, from the state before.
    pure subroutine couple(flow, layers, axial_load, curvature, state, layer_states, found)
       type(flow_type), intent(in) :: flow
       type(layer_type), intent(in) :: layers(:)
@@ -170,6 +173,8 @@ contains
       !> Whether there is an equilibrium that all layers carry
       logical, intent(out) :: found
       type(layer_state) :: trial(size(layers))
+      !> Shear stresses in use and those of the shear flow [Pa]; forces of the layers, and those at a strain
+      !> that differs by `small_strain` [N]
       real(wp), dimension(size(layers)) :: tau, wanted, concrete_force, aside
       real(wp) :: bar_force(size(flow%section%bar_y)), bar_aside(size(flow%section%bar_y))
       real(wp) :: load, slope, scale, eps0
@@ -206,6 +211,7 @@ contains
       !> Longitudinal forces of the layers under given shear stresses, and of the bars less the concrete that
       !> they displace [N].
       pure subroutine membrane_forces(eps0, layer_states, concrete_force, bar_force, carried)
+         !> Strain at mid-depth, compression positive; the shear stresses are the `tau` of `couple`
          real(wp), intent(in) :: eps0
          type(layer_state), intent(inout) :: layer_states(:)
          real(wp), intent(out) :: concrete_force(:), bar_force(:)

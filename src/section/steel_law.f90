@@ -41,6 +41,7 @@ module rbs_section_steel_law
 
 contains
 
+   !> Strain at which the yield stress is reached.
    elemental real(wp) function steel_yield_strain(law)
       type(steel_type), intent(in) :: law
 

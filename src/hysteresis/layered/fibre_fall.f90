@@ -30,7 +30,7 @@ module rbs_hysteresis_layered_fibre_fall
 
 contains
 
-   !> Let a copy of a joint fall from its present state.
+   !> Let a copy of a joint fall from its present state, in which it has lost its axial load.
    subroutine find_fall(section, fall)
       type(fibre_section), intent(in) :: section
       type(layer_fall), intent(out) :: fall
@@ -54,6 +54,7 @@ contains
          call copy%sum_up()
          ! Force of the layers beyond the load; it grows with their stiffness.
          gain = direction*(tension(copy, 0.0_wp) + copy%axial_load)
+         ! At a fixed rotation all layers move with the opening: the way to the first end of a branch.
          step = no_step
          do i = 1, copy%count
             associate (d => copy%deformation(i))
@@ -61,12 +62,14 @@ contains
             end associate
          end do
          if (.not. fall%rests .and. abs(copy%opening - begin) > 0.0_wp .and. copy%a > 0.0_wp) then
+            ! The joint rests where the layers carry the load again, if that lies on these branches.
             next = max(-gain, 0.0_wp)/copy%a
             if (-gain <= scale) next = 0.0_wp
             if (next <= step) then
                fall%rests = .true.
                fall%drop = copy%opening + direction*next - begin
                fall%moment = copy%moment_0 + copy%s*(begin + fall%drop) + copy%q*copy%rotation
+               ! Work of the axial load less that of the layers, whose mean force acts in mid-way.
                fall%freed = -fall%axial_load*fall%drop - &
                             (work + direction*next*tension(copy, 0.5_wp*direction*next))
             end if
@@ -80,7 +83,7 @@ contains
       fall%capacity = fall%axial_load - direction*most
    end subroutine find_fall
 
-   !> Force of the layers, tension positive, a way beyond the present opening [N].
+   !> Force of the layers, tension positive, where the joint has opened further by a way [m] [N].
    pure real(wp) function tension(copy, further)
       type(fibre_section), intent(in) :: copy
       real(wp), intent(in) :: further

@@ -36,19 +36,20 @@ contains
       end do
    end subroutine add_lines
 
-   !> Look along a straight path, on which layer i is at  w + y_i phi  and moves with  v_i = open + y_i turn:
-   !> when it comes to the end of its line ahead.
+   !> Look along a straight path, on which layer i is at  w + y_i phi  and moves with  v_i = opening_rate +
+   !> y_i rotation_rate:  when it comes to the end of its line ahead.
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
    pure subroutine find_ends_ahead(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, &
                                    opening_rate, rotation_rate, least_rate, clearance, ahead, nearest, &
                                    least_clearance, any_unloads, stiffness)
       integer, intent(in) :: n
-      !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
+      !> Distances [m], slopes [N/m] and ends of the lines [m]; all finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
       !> A layer this close to its end is on it, with `clearance` [m]; -1, 0 or 1 as in `segment`, and 1 where
       !> that is 0, else 0
       real(wp), intent(in) :: slack(n), unload_on_reversal(n), both_ways(n)
+      !> Opening w [m], rotation phi [rad], and their rates
       real(wp), intent(in) :: w, phi, opening_rate, rotation_rate
       !> Rates up to this count as zero; addition to `slack` [m]
       real(wp), intent(in) :: least_rate, clearance
@@ -91,6 +92,7 @@ contains
    !> When a layer was last at the end of its line behind: the ways back, as in `find_ends_ahead`.
    pure subroutine find_ends_behind(n, y, lo, hi, w, phi, opening_rate, rotation_rate, least_rate, behind, &
                                     nearest)
+      !> Arguments as in `find_ends_ahead`
       integer, intent(in) :: n
       real(wp), intent(in) :: y(n), lo(n), hi(n), w, phi, opening_rate, rotation_rate, least_rate
       !> Ways back, in units of the rates, and the least of them

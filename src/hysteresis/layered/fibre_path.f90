@@ -24,8 +24,9 @@ contains
    !> Go straight to a rotation and an axial load, from event to event.
    subroutine go(self, rotation, axial_load, work)
       type(fibre_section), intent(inout) :: self
+      !> Rotation of the joint, counted from `rest` [rad], and axial load, compression positive [N]
       real(wp), intent(in) :: rotation, axial_load
-      !> Work of the moment along the path, to be added to [J]
+      !> The work of the moment along the path is added to it [J]
       real(wp), intent(inout), optional :: work
       real(wp) :: begin(2), change(2), share, before(2)
       integer :: event
@@ -34,6 +35,8 @@ contains
       begin = [self%rotation, self%axial_load]
       change = [rotation + self%rest, axial_load] - begin
       if (.not. any(abs(change) > 0.0_wp)) return
+      ! The whole change is the rate of the path, so that ways along it are shares of it. A path that has not
+      ! arrived after so many events does not advance: it has failed.
       share = 0.0_wp
       do event = 1, 1000 + 1000*self%count
          call choose_branches(self, change(1), change(2))
@@ -56,10 +59,10 @@ contains
    end subroutine go
 
    !> Put every layer on its branch along a straight path from the present point, and find
-   !> the length of the path on these branches.
+   !> the length of the path on these branches (`ends`), in units of the rates.
    subroutine choose_branches(self, rotation_rate, axial_rate)
       type(fibre_section), intent(inout) :: self
-      !> Rates of the rotation [rad] and of the axial load [N]
+      !> Changes of the rotation [rad] and of the axial load [N] for each unit of length of the path
       real(wp), intent(in) :: rotation_rate, axial_rate
       real(wp) :: least_clearance, least_rate, clearance, v
       integer :: pass, i
@@ -97,7 +100,7 @@ contains
       call set_ends(self)
    end subroutine choose_branches
 
-   !> The layer at the end of its branch leaves it, if it continues in that direction.
+   !> The layer that the last event has put on the end of its branch leaves it, if it continues beyond.
    subroutine leave_end(self)
       type(fibre_section), intent(inout) :: self
       real(wp) :: v
@@ -110,16 +113,18 @@ contains
       if (.not. abs(v) > self%least_rate(self%opening_rate, self%rotation_rate)) return
       direction = merge(1, -1, v > 0.0_wp)
       associate (branch => self%branch(i), d => self%deformation(i))
+         ! The end where the layer is lies behind it.
          if (abs(branch%end_toward(direction) - d) > abs(branch%end_toward(-direction) - d)) return
       end associate
       call self%leave(i, direction)
       call self%sum_up()
    end subroutine leave_end
 
-   !> Ways of all layers to the ends of their branches.
+   !> Ways of all layers to the ends of their branches (`ahead`), and from them in `ends` the least way, the
+   !> stiffness, and whether a layer unloads on reversal.
    pure subroutine distances_ahead(self, least_clearance)
       type(fibre_section), intent(inout) :: self
-      !> Not above zero if a layer has none
+      !> Not above zero if a layer is on the end that it approaches, or unloads on this reversal
       real(wp), intent(out) :: least_clearance
 
       call find_ends_ahead(self%count, self%y, self%k, self%lo, self%hi, self%slack, &
@@ -129,7 +134,8 @@ contains
                            least_clearance, self%ends%unload_on_reversal, self%ends%stiffness)
    end subroutine distances_ahead
 
-   !> Length of the chosen path, ahead and back, until a layer reaches the end of its branch.
+   !> Complete the ends of the chosen path, after `distances_ahead`, which sets `ends%ahead` to the least way:
+   !> the layers that end it, and the way back.
    pure subroutine set_ends(self)
       type(fibre_section), intent(inout) :: self
       integer :: i
@@ -147,6 +153,7 @@ contains
          else
             ends%ahead = unbounded
          end if
+         ! A layer that unloads on reversal leaves no way back: `behind` stays zero.
          if (ends%unload_on_reversal) return
          call find_ends_behind(self%count, self%y, self%lo, self%hi, self%opening, self%rotation, &
                                self%opening_rate, self%rotation_rate, self%least_rate(self%opening_rate, &
@@ -168,9 +175,10 @@ contains
    !>
    !>     G(x) = sum k_i(v_i) v_i = -dN,        v_i = x + y_i dphi
    !>
-   !> with the slopes of the branches on which each layer would open and close. Without softening G
-   !> rises and the root is unique; of several the one nearest to the present rate is taken; none means that
-   !> the layers cannot carry the axial load.
+   !> with the slopes k_i of the branches on which layer i would open (v_i > 0) and close; dphi and dN are the
+   !> rates of rotation and axial load. G has a corner at each x = -y_i dphi, where layer i stands still.
+   !> Without softening G rises and the root is unique; of several roots the one nearest to the present rate
+   !> is taken; without a root the layers cannot carry the axial load.
    subroutine weigh_both_ways(self)
       type(fibre_section), intent(inout) :: self
       real(wp), dimension(self%count) :: opening, closing, corner
@@ -204,6 +212,7 @@ contains
             x = at + (wanted - value)/slope
          else if (abs(slope) <= no_stiffness*self%stiffness .and. abs(value - wanted) <= &
                   no_stiffness*(abs(wanted) + self%stiffness*self%reach*abs(self%rotation_rate))) then
+            ! This piece is level at the wanted value: any x on it is a root.
             x = free
             if (j > 0) x = max(x, at)
             if (j < m) x = min(x, corner(order(j + 1)))
@@ -223,6 +232,7 @@ contains
       end do
       if (.not. found) then
          self%failed = .true.
+         ! Above -dN only closing could lower G.
          self%failure_direction = merge(-1, 1, value_at(free) > wanted)
          return
       end if
@@ -250,6 +260,7 @@ contains
          end do
       end function slope_between
 
+      !> G at the rate x of the opening.
       real(wp) function value_at(x) result(total)
          real(wp), intent(in) :: x
          real(wp) :: v
@@ -264,7 +275,8 @@ contains
 
    end subroutine weigh_both_ways
 
-   !> Slope of the branch on which a layer would continue in a direction. It is moved there and back.
+   !> Slope of the branch on which layer i would continue in a direction (+1: it opens, -1: it closes). For
+   !> this the layer is put on that branch, and back again.
    real(wp) function slope_ahead(self, i, direction) result(k)
       type(fibre_section), intent(inout) :: self
       integer, intent(in) :: i, direction

@@ -123,8 +123,10 @@ contains
    !> Virgin layers without load.
    subroutine start(self, y, weight, rule, rule_of)
       class(fibre_section), intent(inout) :: self
-      !> See `fibre_section`
+      !> Distances of the layers from the middle of the section [m], number of equal layers that each
+      !> represents (layers)
       real(wp), intent(in) :: y(:), weight(:)
+      !> The rules of the layers, and which of them each layer has (layers)
       type(rule_slot), intent(in) :: rule(:)
       integer, intent(in) :: rule_of(:)
       integer :: i, n
@@ -151,7 +153,8 @@ contains
       self%turning = sum(self%k*(self%y - self%centre)**2)
    end subroutine start
 
-   !> Sums over the layers on their present branches.
+   !> Sums over the layers on their present branches, and from them the moment at the present opening and
+   !> rotation.
    pure subroutine sum_up(self)
       class(fibre_section), intent(inout) :: self
 
@@ -159,7 +162,7 @@ contains
       self%moment = self%moment_0 + (self%s*self%opening + self%q*self%rotation)
    end subroutine sum_up
 
-   !> The branch of a layer into the arrays.
+   !> Copy the branch of layer i, times the weight of the layer, into the arrays.
    pure subroutine put_branch(self, i)
       type(fibre_section), intent(inout) :: self
       integer, intent(in) :: i
@@ -192,13 +195,15 @@ contains
       deformation = self%opening + self%y(i)*self%rotation
    end function deformation
 
-   !> A layer passes the end of its branch, or unloads on a reversal. `sum_up` is left to the caller.
+   !> Put layer i on the branch that follows: it passes the end of its present branch, or unloads on a
+   !> reversal. The caller calls `sum_up`.
    subroutine leave(self, i, direction)
       class(fibre_section), intent(inout) :: self
       integer, intent(in) :: i
       !> +1: it opens, -1: it closes
       integer, intent(in) :: direction
 
+      ! The first change since `mark` saves the layer.
       if (self%marked) then
          if (.not. self%is_kept(i)) then
             self%is_kept(i) = .true.
@@ -219,6 +224,7 @@ contains
    !> at the end within the round-off of its deformation.
    pure logical function must_leave(self, i, direction)
       class(fibre_section), intent(in) :: self
+      !> Layer; +1: it opens, -1: it closes
       integer, intent(in) :: i, direction
       real(wp) :: far
 
@@ -228,9 +234,11 @@ contains
       must_leave = direction*(far - self%deformation(i)) <= self%end_tolerance() + on_layer_end*abs(far)
    end function must_leave
 
-   !> Put a layer that moves in a direction on its next branch. `sum_up` is left to the caller.
+   !> Put a layer that moves in a direction on the branch along which it can move; branches without length are
+   !> passed. The caller calls `sum_up`.
    subroutine go_on(self, i, direction)
       class(fibre_section), intent(inout) :: self
+      !> Layer; +1: it opens, -1: it closes
       integer, intent(in) :: i, direction
       integer :: branches
 
@@ -248,7 +256,7 @@ contains
                        + round_off*self%largest
    end function end_tolerance
 
-   !> Rates of layers that are round-off, as the opening and the rotation move.
+   !> Rates of layers up to this are round-off, as the opening and the rotation move with these rates.
    pure real(wp) function least_rate(self, opening_rate, rotation_rate)
       class(fibre_section), intent(in) :: self
       real(wp), intent(in) :: opening_rate, rotation_rate
@@ -260,8 +268,9 @@ contains
    !> branches.
    pure subroutine move_to(self, rotation, axial_load, distance, first)
       class(fibre_section), intent(inout) :: self
+      !> Rotation, from zero and not from `rest` [rad]; compression positive [N]
       real(wp), intent(in) :: rotation, axial_load
-      !> In units of the rates, negative: back
+      !> Way there, in units of the rates, negative: back. Only layers without stiffness use it
       real(wp), intent(in) :: distance
       !> The layer that comes to the end of its branch, 0 for none
       integer, intent(in) :: first
@@ -269,6 +278,7 @@ contains
       self%rotation = rotation
       self%axial_load = axial_load
       self%on_end = first
+      ! Equilibrium gives the opening, unless the layers have next to no stiffness.
       if (self%a > firm*self%stiffness) then
          self%opening = -(axial_load + (self%force_0 + self%s*rotation))/self%a
       else
@@ -281,13 +291,14 @@ contains
    !> Opening of the joint at the middle at a rotation and an axial load on the present branches [m].
    pure real(wp) function opening_at(self, rotation, axial_load)
       class(fibre_section), intent(in) :: self
-      !> Rotation of the joint, counted from `rest`
+      !> Rotation of the joint, counted from `rest` [rad]; compression positive [N]
       real(wp), intent(in) :: rotation, axial_load
 
       associate (turned => rotation + self%rest - self%rotation)
          if (self%a > no_stiffness*self%stiffness) then
             opening_at = self%opening - (self%s*turned + (axial_load - self%axial_load))/self%a
          else
+            ! Layers without stiffness open as on the path that was chosen last.
             opening_at = self%opening
             if (abs(self%rotation_rate) > 0.0_wp) then
                opening_at = opening_at + self%opening_rate/self%rotation_rate*turned
@@ -296,7 +307,8 @@ contains
       end associate
    end function opening_at
 
-   !> Rate of the opening on the present branches.
+   !> Rate of the opening on the present branches; layers without stiffness open as on the path that was
+   !> chosen last.
    pure real(wp) function rate_of_opening(self, rotation_rate, axial_rate) result(opening_rate)
       type(fibre_section), intent(in) :: self
       real(wp), intent(in) :: rotation_rate, axial_rate
@@ -387,7 +399,7 @@ contains
       self%marked = .false.
    end subroutine forget
 
-   !> Save a layer before it tries a way.
+   !> Save layer i before it is put on a branch for a trial.
    subroutine save_layer(self, i)
       class(fibre_section), intent(inout) :: self
       integer, intent(in) :: i
@@ -396,7 +408,7 @@ contains
       call copy_memory(self%slot(i), self%tried_slot(i))
    end subroutine save_layer
 
-   !> A layer comes back from its trial.
+   !> Put layer i back as `save_layer` has saved it.
    subroutine restore_layer(self, i)
       class(fibre_section), intent(inout) :: self
       integer, intent(in) :: i
@@ -422,6 +434,7 @@ contains
       self%section_state = self%kept_state
    end subroutine restore
 
+   !> Save or restore the state and the layers; the arrays of the branches follow from these.
    pure subroutine serialize(self, stream)
       class(fibre_section), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

@@ -55,6 +55,7 @@ contains
    !> there is no moment.
    subroutine start(self, axial_load, memory, branch)
       class(layered_rule), intent(in) :: self
+      !> Compression positive [N]
       real(wp), intent(in) :: axial_load
       class(rule_memory), allocatable, intent(out) :: memory
       type(segment), intent(out) :: branch
@@ -70,6 +71,7 @@ contains
       end select
    end subroutine start
 
+   !> The branch after the present one, which the motion leaves going up (direction = +1) or down (-1).
    subroutine next(self, memory, branch, direction)
       class(layered_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
@@ -82,9 +84,11 @@ contains
       end select
    end subroutine next
 
-   !> At the end of the present branch, or where the motion reverses, find the next one.
+   !> At the end of the present branch in a direction (+1 or -1), or where the motion reverses into that
+   !> direction, find the next one.
    subroutine leave_branch(section, branch, direction)
       type(fibre_section), intent(inout) :: section
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       real(wp) :: rotation, distance
@@ -96,6 +100,7 @@ contains
          branch = segment(d0=branch%d0, f0=branch%f0)
          return
       end if
+      ! The rate of the path is +-1, so the product is the way along it; it is ahead where both agree.
       distance = section%rotation_rate*(rotation - section%rotation)
       first = merge(section%ends%first_ahead, section%ends%first_behind, &
               direction*section%rotation_rate > 0.0_wp)
@@ -123,6 +128,7 @@ contains
          call branch%lead_outward(direction, near=(branch%d0), far=direction*unbounded)
          return
       end if
+      ! Along a rotation of rate +-1 sum k v**2 is the slope of the moment.
       branch%k = section%ends%stiffness
       if (abs(branch%k) <= no_stiffness*section%turning) branch%k = 0.0_wp
       far = direction*unbounded
@@ -133,9 +139,10 @@ contains
                                unload_on_reversal=section%ends%unload_on_reversal)
    end subroutine find_branch
 
-   !> Rotate until there is no moment, and measure rotations from there.
+   !> Rotate until there is no moment, and measure rotations from there (`rest`, zero up to now).
    subroutine find_rest(section, branch)
       type(fibre_section), intent(inout) :: section
+      !> The branch at that rotation
       type(segment), intent(inout) :: branch
       real(wp) :: moment, distance
       integer :: event, s
@@ -158,8 +165,8 @@ contains
       branch%f0 = 0.0_wp
    end subroutine find_rest
 
-   !> Message on an axial load that the layers of a spring do not carry; blank if they do, or if there
-   !> are none.
+   !> Message on an axial load that the layers of a spring do not carry; blank if they do, or if the spring
+   !> has no layers. The message gives the load that they carry, found by bisection.
    subroutine check_axial_load(rule, axial_load, text)
       class(rule_type), intent(in) :: rule
       !> Compression positive [N]
@@ -187,6 +194,7 @@ contains
    !> Whether the layers of a spring carry an axial load; true of other springs, which carry none.
    logical function carries_axial_load(rule, axial_load)
       class(rule_type), intent(in) :: rule
+      !> Compression positive [N]
       real(wp), intent(in) :: axial_load
       class(rule_memory), allocatable :: memory
       type(segment) :: branch
@@ -202,13 +210,15 @@ contains
    !> At a rotation the axial load changes at once; the branch of the joint from there on.
    subroutine branch_under(section, rotation, axial_load, work, branch)
       type(fibre_section), intent(inout) :: section
-      !> Present rotation, on the present branch
+      !> Present rotation, on the present branch, counted from `rest` [rad]; new axial load, compression
+      !> positive [N]
       real(wp), intent(in) :: rotation, axial_load
-      !> Work of the moment, to be added to [J]
+      !> The work of the moment is added to it [J]
       real(wp), intent(inout) :: work
       type(segment), intent(out) :: branch
       real(wp) :: distance
 
+      ! First along the present branch to the present rotation.
       distance = section%rotation_rate*(rotation + section%rest - section%rotation)
       if (abs(distance) > 0.0_wp) then
          call section%move_to(rotation + section%rest, section%axial_load, distance, 0)

@@ -63,9 +63,10 @@ module rbs_hysteresis_rules_backbone
 
 contains
 
-   !> Find the corners for the present factors.
+   !> Find the corners for the present factors, `strength` and `softening`.
    pure subroutine draw(self, given)
       class(backbone_side), intent(inout) :: self
+      !> The virgin side, with values for all but `d_u`
       type(backbone_parameters), intent(in) :: given
       real(wp) :: hardening, softening, f_zero, d_res, d_x, d, f, slope
 
@@ -90,6 +91,8 @@ contains
          if (d > 0.0_wp .and. f <= limit(d)) call self%add_corner(d, f)
          d = self%d_y
          f = self%strength*b%f_y
+         ! Slope of the line that was followed last: to yield or, where the cracking point is above the
+         ! limit already, to cracking.
          slope = f/d
          if (self%last > 0) slope = (f - self%f(1))/(d - self%d(1))
          if (b%d_c > 0.0_wp .and. self%last == 0) slope = b%f_c/b%d_c
@@ -114,7 +117,7 @@ contains
 
    contains
 
-      !> The largest force that the softening and the residual line allow.
+      !> The force of the softening line or, where that is larger, of the residual one.
       pure real(wp) function limit(at)
          real(wp), intent(in) :: at
 
@@ -141,6 +144,7 @@ contains
       call self%add_corner(given%d_u + drop*f*(given%d_y/given%f_y), 0.0_wp)
    end subroutine end_at_rupture
 
+   !> Add a corner behind the others.
    pure subroutine add_corner(self, d, f)
       class(backbone_side), intent(inout) :: self
       !> Deformation and force, both positive
@@ -151,7 +155,7 @@ contains
       self%f(self%last) = f
    end subroutine add_corner
 
-   !> Force at a deformation, both positive [N or N m].
+   !> Force at a deformation, both positive [N or N m]; behind the last corner it is constant.
    elemental real(wp) function force(self, d)
       class(backbone_side), intent(in) :: self
       real(wp), intent(in) :: d
@@ -162,7 +166,7 @@ contains
       if (i < self%last) force = self%f(i) + slope_after(self, i)*(d - self%d(i))
    end function force
 
-   !> The last corner that is not beyond a deformation.
+   !> Number of the last corner that is not beyond a deformation; 0 is the origin.
    pure integer function corner_before(self, d) result(i)
       type(backbone_side), intent(in) :: self
       real(wp), intent(in) :: d
@@ -173,6 +177,7 @@ contains
       i = 0
    end function corner_before
 
+   !> Slope of the line from corner i to the next one.
    elemental real(wp) function slope_after(self, i) result(slope)
       type(backbone_side), intent(in) :: self
       integer, intent(in) :: i
@@ -197,6 +202,7 @@ contains
          far = self%d(i + 1)
          slope = slope_after(self, i)
       end if
+      ! The sum turns a force of -0 into 0.
       line = segment(d0=s*self%d(i), f0=0.0_wp + s*self%f(i), k=slope)
       call line%lead_outward(s, near=d, far=s*far)
    end function line_from
@@ -204,7 +210,7 @@ contains
    !> The first deformation where a line that rises steeply from zero force meets the backbone [m or rad].
    elemental real(wp) function meeting(self, k, start)
       class(backbone_side), intent(in) :: self
-      !> Slope, not below the elastic one, and deformation without force
+      !> Slope, not below the elastic one [N/m or N m/rad], and deformation at zero force, positive
       real(wp), intent(in) :: k, start
       real(wp) :: slope
       integer :: i
@@ -217,6 +223,7 @@ contains
          meeting = max(meeting, start)
          return
       end do
+      ! Behind the last corner the force is constant.
       meeting = max(start + self%f(self%last)/k, self%d(self%last))
    end function meeting
 
@@ -253,6 +260,7 @@ contains
 
    contains
 
+      !> Present one key, under its name or, on the negative side, with the suffix _neg.
       subroutine key(name, x, unit, bound, meaning)
          character(len=*), intent(in) :: name, unit, meaning
          real(wp), intent(inout) :: x
@@ -278,6 +286,7 @@ contains
                   d_u=either(self%d_u, other%d_u))
    end function completed
 
+   !> A number if it is given, else that of the other side.
    pure real(wp) function either(x, other)
       real(wp), intent(in) :: x, other
 
@@ -312,6 +321,7 @@ contains
 
    contains
 
+      !> Add a message unless a value and a limit, each with its name, stand in a relation.
       subroutine require(number, value, relation, other, limit, reason)
          character(len=*), intent(in) :: number, relation, other, reason
          real(wp), intent(in) :: value, limit
@@ -350,7 +360,7 @@ contains
       carries = self%f_y > 0.0_wp
    end function carries
 
-   !> Stiffness of the virgin spring on this side [N/m].
+   !> Stiffness of the virgin spring on this side, up to cracking or yield [N/m or N m/rad].
    elemental real(wp) function stiffness(self)
       class(backbone_parameters), intent(in) :: self
 

@@ -27,6 +27,7 @@ module rbs_hysteresis_rules_bilinear
 
 contains
 
+   !> Present the parameters to a visitor.
    subroutine visit(self, v)
       class(bilinear_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -36,6 +37,7 @@ contains
       call v%key('k_post', self%k_post, stiffness, not_negative, 'stiffness after yield, below k')
    end subroutine visit
 
+   !> Initial stiffness and first branch.
    subroutine prepare(self)
       class(bilinear_rule), intent(inout) :: self
 
@@ -43,6 +45,7 @@ contains
       self%branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
    end subroutine prepare
 
+   !> Add a message for each pair of parameters that do not suit each other.
    subroutine check_relations(self, name, messages)
       class(bilinear_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -53,6 +56,7 @@ contains
       call check_product(self%k, self%d_y, name, 'k d_y', messages)
    end subroutine check_relations
 
+   !> The branch after the present one, which the motion leaves going up (direction = +1) or down (-1).
    subroutine next(self, memory, branch, direction)
       class(bilinear_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
@@ -66,7 +70,8 @@ contains
          branch = segment(f0=direction*(self%k - self%k_post)*self%d_y, k=self%k_post)
          call branch%lead_outward(direction, near=d, far=direction*unbounded)
       else
-         ! The motion has turned back from a bounding line: elastic over twice the yield deformation.
+         ! The motion has turned back from the bounding line of side -direction: elastic from there (far)
+         ! over twice the yield deformation to the bounding line of the other side (near).
          f = branch%force(d)
          branch = segment(d0=d, f0=f, k=self%k)
          call branch%lead_outward(-direction, near=d + direction*2.0_wp*self%d_y, far=d, &

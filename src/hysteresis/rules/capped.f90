@@ -34,7 +34,7 @@ module rbs_hysteresis_rules_capped
 
 contains
 
-   !> The memory of the virgin part, and its branch.
+   !> The memory of a virgin part, and the branch that it is on.
    subroutine start_part(self, memory, branch)
       type(capped_part), intent(in) :: self
       type(capped_memory), intent(out) :: memory
@@ -50,10 +50,11 @@ contains
       branch = virgin_branch(self, memory%now, 1)
    end subroutine start_part
 
-   !> The elastic line of a side; of both if they have the same slope.
+   !> The elastic line of a side up to its first corner; of both sides if they have the same slope.
    pure type(segment) function virgin_branch(self, now, s) result(branch)
       type(capped_part), intent(in) :: self
       type(capped_state), intent(in) :: now
+      !> Side, +1 or -1
       integer, intent(in) :: s
       real(wp) :: near, far
 
@@ -66,11 +67,14 @@ contains
                                unload_on_reversal=.false.)
    end function virgin_branch
 
-   !> The next branch at the end of the present one, where the motion continues or reverses, see `rule_type`.
+   !> The branch after the present one, which the motion leaves by its end in a direction: onward, or back
+   !> from a reversal. `outward` means away from zero force on the present side.
    subroutine next_branch(self, memory, branch, direction)
       type(capped_part), intent(in), target :: self
       type(capped_memory), intent(inout), target :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout), target :: branch
+      !> +1: the motion goes up, -1: down
       integer, intent(in) :: direction
       type(capped_spring) :: spring
       type(point) :: end_point
@@ -128,10 +132,11 @@ contains
       end associate
    end subroutine next_branch
 
-   !> On the backbone of side s from a point on.
+   !> On the backbone of side s (+1 or -1) from a point on.
    subroutine follow_backbone(spring, s, end_point)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s
+      !> Where the spring is, with signs
       type(point), intent(in) :: end_point
       real(wp) :: k
 
@@ -141,7 +146,8 @@ contains
          ! No turn of this side lies ahead any more.
          turns_of(s)%count = 0
          if (.not. now%yielded .and. s*end_point%d >= now%backbone(s)%d_y) then
-            ! Energy dissipated before yield does not deteriorate the spring.
+            ! Energy dissipated before yield does not deteriorate the spring: counting begins with the work
+            ! that unloading from here would leave.
             k = unloading_stiffness(spring, s, point(s*end_point%d, s*end_point%f))
             now%work_at_zero = now%work - 0.5_wp*end_point%f**2/k
             now%yielded = .true.
@@ -153,6 +159,7 @@ contains
    !> The motion has turned back: unload toward zero force.
    subroutine unload(spring, end_point)
       type(capped_spring), intent(inout) :: spring
+      !> Where it has turned, with signs; `at` is the same point with positive values
       type(point), intent(in) :: end_point
       type(point) :: at
       real(wp) :: k
@@ -182,6 +189,7 @@ contains
    !> Zero force is reached: the excursion to the present side is over.
    subroutine end_excursion(spring, zero)
       type(capped_spring), intent(inout) :: spring
+      !> Deformation there [m or rad]
       real(wp), intent(in) :: zero
 
       associate (now => spring%now, turns_of => spring%turns_of)
@@ -197,7 +205,8 @@ contains
       end associate
    end subroutine end_excursion
 
-   !> Without force the motion is toward side s, which deteriorates.
+   !> At zero force the motion goes on toward side s (+1 or -1), which deteriorates now: into a gap, or to
+   !> reloading.
    subroutine enter(spring, s, zero)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s
@@ -237,7 +246,7 @@ contains
       end associate
    end subroutine enter
 
-   !> Start reloading, to the newest open turn or the peak.
+   !> Start reloading at `start_at`, to the newest open turn of the side or, without one, to the peak.
    subroutine reload(spring)
       type(capped_spring), intent(inout) :: spring
       logical :: found
@@ -265,9 +274,11 @@ contains
       end associate
    end subroutine reload
 
-   !> The goal of reloading is reached.
+   !> Reloading has reached its goal: it goes on along the line that was left at that turn, or along the
+   !> backbone.
    subroutine go_on(spring, end_point)
       type(capped_spring), intent(inout) :: spring
+      !> The goal, with signs
       type(point), intent(in) :: end_point
 
       associate (now => spring%now, turns_of => spring%turns_of)
@@ -284,6 +295,7 @@ contains
                now%to_turn = turns%count > 0
                call aim(spring, point(s*end_point%d, s*end_point%f))
             else
+               ! On the backbone all turns of the other side fade.
                call turns_of(-s)%let_fade(0_int64, s*end_point%d)
                call follow_backbone(spring, s, end_point)
             end if
@@ -291,17 +303,17 @@ contains
       end associate
    end subroutine go_on
 
-   !> The straight line to the goal. That point is its anchor, so that it is met exactly.
+   !> The straight line from a point to the goal. The goal is its anchor, so that it is met exactly.
    subroutine aim(spring, from)
       type(capped_spring), intent(inout) :: spring
-      !> As seen from the side
+      !> As seen from the present side: positive values lie on it
       type(point), intent(in) :: from
       real(wp) :: distance, k
 
       associate (part => spring%part, now => spring%now, branch => spring%branch)
          associate (s => now%side, at => now%goal)
             distance = at%d - from%d
-            ! If round-off leaves no distance, the point is met at once.
+            ! If round-off leaves no distance, the goal is met at once. (0 + x turns a force of -0 into 0.)
             k = part%k_0
             if (distance > 0.0_wp) then
                k = (at%f - from%f)/distance

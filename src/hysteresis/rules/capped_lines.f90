@@ -114,8 +114,9 @@ contains
    !> Stiffness at which a turn unloads [N/m or N m/rad].
    real(wp) function unloading_stiffness(spring, s, at) result(k)
       type(capped_spring), intent(inout) :: spring
+      !> Side, +1 or -1
       integer, intent(in) :: s
-      !> The turn, both positive
+      !> The turn, both values positive
       type(point), intent(in) :: at
       real(wp) :: least
 
@@ -127,7 +128,7 @@ contains
       k = min(k, spring%part%k_0)
    end function unloading_stiffness
 
-   !> The deformation, as seen from the side, that unloading from a deformation does not pass.
+   !> The deformation that unloading from a deformation d does not pass, both as seen from the present side.
    real(wp) function outermost_rest(spring, d)
       type(capped_spring), intent(inout) :: spring
       real(wp), intent(in) :: d
@@ -135,10 +136,11 @@ contains
       outermost_rest = max(spring%now%start_at, spring%now%closed_start - release*(d - spring%now%closed_at))
    end function outermost_rest
 
-   !> Energy that is dissipated at a turn, less that of the stiffest unloading [J]. It never
-   !> decreases along a line.
+   !> Energy that is dissipated when the motion turns here, after an unloading along the stiffest slope [J];
+   !> zero before yield. It never decreases along a line.
    real(wp) function spent_at(spring, f)
       type(capped_spring), intent(inout) :: spring
+      !> Present force [N or N m]
       real(wp), intent(in) :: f
 
       associate (part => spring%part, now => spring%now)
@@ -162,8 +164,9 @@ contains
    !> the cracking force of the other side, after it decreasing with ductility [N/m or N m/rad].
    real(wp) function virgin_unloading(spring, s, d) result(k)
       type(capped_spring), intent(inout) :: spring
+      !> Side, +1 or -1
       integer, intent(in) :: s
-      !> Positive
+      !> Largest deformation of that side, positive [m or rad]
       real(wp), intent(in) :: d
       real(wp) :: f, beyond
 
@@ -181,7 +184,7 @@ contains
       end associate
    end function virgin_unloading
 
-   !> The backbone and the peak of a side after the dissipation on the other side.
+   !> Draw the backbone of side s anew after the dissipation on the other side, and move its peak outward.
    subroutine deteriorate(spring, s)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s
@@ -215,17 +218,18 @@ contains
       end associate
    end subroutine deteriorate
 
-   !> Put the open turns of a side on the lines as they are now.
+   !> Put the open turns of side s on the present lines: each on the line to the turn that is next older, the
+   !> oldest on the line to the backbone.
    subroutine find_turns(spring, s, least)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s
-      !> Lines start here or farther in
+      !> The lines do not start before this deformation, as seen from the side
       real(wp), intent(in) :: least
       integer :: i
 
       do i = 1, spring%turns_of(s)%count
          associate (turned => spring%turns_of(s)%list(i))
-            ! That of the peak itself stays: unloading from it ends behind `least` in any case.
+            ! A turn at the peak itself stays: unloading from it ends behind `least` in any case.
             if (turned%at%d < turned%goal%d) turned%start = max(turned%start, least)
             if (i == 1) then
                turned%goal = goal_from(spring, s, turned%start)
@@ -246,7 +250,7 @@ contains
    type(point) function goal_from(spring, s, start) result(goal)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s
-      !> As seen from the side
+      !> Deformation at which the line has no force, as seen from side s
       real(wp), intent(in) :: start
       real(wp) :: slope
       integer :: i
@@ -254,15 +258,18 @@ contains
       associate (part => spring%part, now => spring%now)
          associate (backbone => now%backbone(s))
             goal = point(now%peak(s), backbone%force(now%peak(s)))
+            ! A slope of -1: there is no line yet.
             slope = -1.0_wp
             if (goal%d > start) slope = goal%f/(goal%d - start)
             do i = 1, backbone%last
+               ! Only corners beyond the peak and above the line.
                if (backbone%d(i) <= max(now%peak(s), start)) cycle
                if (backbone%f(i) <= slope*(backbone%d(i) - start)) cycle
                goal = point(backbone%d(i), backbone%f(i))
                slope = goal%f/(goal%d - start)
             end do
             if (slope < 0.0_wp .or. slope > part%k_0*(1.0_wp + parallel)) then
+               ! No line is steeper than the virgin spring.
                goal%d = backbone%meeting(part%k_0, start)
                goal%f = backbone%force(goal%d)
             end if
@@ -270,6 +277,7 @@ contains
       end associate
    end function goal_from
 
+   !> Become a copy of another memory. Open turns move with deterioration, so all of them are copied.
    pure subroutine copy(self, other)
       class(capped_memory), intent(inout) :: self
       type(capped_memory), intent(in) :: other
@@ -281,6 +289,7 @@ contains
       end do
    end subroutine copy
 
+   !> Save or restore the state and the open turns of both sides.
    pure subroutine serialize(self, stream)
       class(capped_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

@@ -21,6 +21,7 @@ module rbs_hysteresis_rules_compression
 
 contains
 
+   !> Present the parameters to a visitor.
    subroutine visit(self, v)
       class(compression_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -29,7 +30,8 @@ contains
       call v%key('gap', self%gap, deformation, not_negative, 'closing before the faces touch')
    end subroutine visit
 
-   !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
+   !> Initial stiffness and first branch. Openings are positive; a joint without a gap is closed at zero, one
+   !> with a gap at an opening of -gap.
    subroutine prepare(self)
       class(compression_rule), intent(inout) :: self
 
@@ -38,6 +40,7 @@ contains
       if (self%gap > 0.0_wp) self%branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
    end subroutine prepare
 
+   !> The free line when the joint opens (direction = +1), the line of contact when it closes (-1).
    subroutine next(self, memory, branch, direction)
       class(compression_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory

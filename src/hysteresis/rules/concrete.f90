@@ -85,6 +85,7 @@ module rbs_hysteresis_rules_concrete
 
 contains
 
+   !> Present the parameters to a visitor.
    subroutine visit(self, v)
       class(concrete_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -107,6 +108,7 @@ contains
                  'share of the force that opening gives up at once after closing to d_peak or more')
    end subroutine visit
 
+   !> Initial stiffness, and memory and first branch of the virgin spring.
    subroutine prepare(self)
       class(concrete_rule), intent(inout) :: self
       type(concrete_state) :: virgin
@@ -121,6 +123,7 @@ contains
       self%memory = concrete_memory(now=virgin)
    end subroutine prepare
 
+   !> Add a message for each pair of parameters that do not suit each other.
    subroutine check_relations(self, name, messages)
       class(concrete_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -133,6 +136,7 @@ contains
       call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
    end subroutine check_relations
 
+   !> The branch after the present one, which the motion leaves going up (direction = +1) or down (-1).
    subroutine next(self, memory, branch, direction)
       class(concrete_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
@@ -145,11 +149,14 @@ contains
       end select
    end subroutine next
 
-   !> The next branch at the end of the present one, where the motion continues or reverses.
+   !> The next branch at the end of the present one, where the motion continues or reverses: from the point of
+   !> closing c [m] and compression f [N].
    subroutine find_branch(self, now, branch, direction)
       type(concrete_rule), intent(in), target :: self
       type(concrete_state), intent(inout), target :: now
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout), target :: branch
+      !> -1: the spring closes, +1: it opens
       integer, intent(in) :: direction
       type(concrete_spring) :: spring
       real(wp) :: c, f
@@ -176,7 +183,7 @@ contains
             call rub(spring, c, f)
          case (between)
             call close_on(spring, c)
-         case default
+         case default                                    ! closing
             call touch(spring)
          end select
       else
@@ -208,7 +215,7 @@ contains
             call release(spring, c)
          case (releasing)
             call release(spring, c)
-         case default
+         case default                                    ! opening or closing, without force
             call open_up(spring, c)
          end select
       end if
@@ -260,6 +267,7 @@ contains
          end if
          now%c_u = c
          now%f_u = f
+         ! Up to the end of the first chord the spring is elastic.
          share = karsan_jirsa(c/rule%d_peak) - karsan_jirsa(chord_ends(1))
          ! Unloading is never stiffer than `k`.
          now%c_p = max(min(rule%plastic*share*rule%d_peak, c - f/rule%k), 0.0_wp)
@@ -283,7 +291,8 @@ contains
       end associate
    end subroutine unload
 
-   !> On the line between the first touch of the faces and full closing; without length it is skipped.
+   !> On the line between the first touch of the faces and full closing. Without a gap this line has no
+   !> length: a spring that closes goes on to `unload`, any other opens.
    subroutine touch(spring)
       type(concrete_spring), intent(inout) :: spring
       real(wp) :: c_closed, f_closed
@@ -309,7 +318,9 @@ contains
    !> to that of opening.
    subroutine rub(spring, c, f)
       type(concrete_spring), intent(inout) :: spring
+      !> Where the spring is: closing [m], compression [N]
       real(wp), intent(in) :: c, f
+      !> Closing at which this line meets the path of closing and that of opening
       real(wp) :: upper, lower
 
       associate (rule => spring%rule, now => spring%now, branch => spring%branch)
@@ -325,7 +336,8 @@ contains
       end associate
    end subroutine rub
 
-   !> The share by which the path of opening is lower: none where the virgin spring is elastic.
+   !> The share by which the path of opening is below that of closing: zero where the spring has not closed
+   !> beyond the elastic first chord, `friction` from `d_peak` on.
    real(wp) function share_of_friction(spring)
       type(concrete_spring), intent(inout) :: spring
 
@@ -333,9 +345,10 @@ contains
       share_of_friction = spring%rule%friction*min(max(share_of_friction, 0.0_wp), 1.0_wp)
    end function share_of_friction
 
-   !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing.
+   !> Closing at which the line of the initial stiffness through (c, f) meets a path [m].
    real(wp) function meeting(spring, share, c, f)
       type(concrete_spring), intent(inout) :: spring
+      !> Force of that path over that of the path of closing; closing [m] and compression [N] of the spring
       real(wp), intent(in) :: share, c, f
       real(wp) :: c_closed, f_closed, c_0, f_0, slope
 
@@ -364,7 +377,7 @@ contains
       end associate
    end function meeting
 
-   !> On the path of closing from the closing c on.
+   !> On the path of closing from the closing c [m] on: the envelope, unloading, or contact.
    subroutine close_on(spring, c)
       type(concrete_spring), intent(inout) :: spring
       real(wp), intent(in) :: c
@@ -386,7 +399,7 @@ contains
       end associate
    end subroutine close_on
 
-   !> On the path of opening from the closing c on.
+   !> On the path of opening from the closing c [m] on: releasing, parting, or open.
    subroutine release(spring, c)
       type(concrete_spring), intent(inout) :: spring
       real(wp), intent(in) :: c
@@ -412,7 +425,7 @@ contains
       end associate
    end subroutine release
 
-   !> Where a closing crack is fully closed.
+   !> Where a closing crack is fully closed: without a gap at the plastic closing, without force.
    subroutine full_closing(spring, c, f)
       type(concrete_spring), intent(inout) :: spring
       !> Closing [m] and force [N]
@@ -442,6 +455,8 @@ contains
    subroutine widen(spring, c)
       type(concrete_spring), intent(inout) :: spring
       real(wp), intent(in) :: c
+      !> Width of the opening where it began and where it ended, from the plastic closing; the part of this
+      !> way up to the widest opening so far; the way as a number of full openings
       real(wp) :: before, width, inside, openings
 
       associate (rule => spring%rule, now => spring%now)
@@ -484,7 +499,8 @@ contains
       curve = self%f_peak*x*r/(r - 1.0_wp + x**r)
    end function curve
 
-   !> The line through two points (closing, force), of which the second is further closed; both ends open.
+   !> The line through two points (closing [m], compression [N]), of which the second is further closed; both
+   !> ends belong to the next lines.
    pure type(segment) function chord(c_1, f_1, c_2, f_2) result(branch)
       real(wp), intent(in) :: c_1, f_1, c_2, f_2
 
@@ -492,7 +508,7 @@ contains
       if (c_2 > c_1) branch%k = (f_2 - f_1)/(c_2 - c_1)
    end function chord
 
-   !> Let a branch of the envelope unload on reversal.
+   !> Let a branch along which the spring closes be left as soon as the motion turns back.
    pure subroutine set_unloading(branch)
       type(segment), intent(inout) :: branch
 
@@ -500,6 +516,7 @@ contains
       branch%unload_on_reversal = -1
    end subroutine set_unloading
 
+   !> Become a copy of the memory of another spring of this rule.
    pure subroutine copy(self, other)
       class(concrete_memory), intent(inout) :: self
       class(rule_memory), intent(in) :: other
@@ -510,6 +527,7 @@ contains
       end select
    end subroutine copy
 
+   !> Save or restore the state.
    pure subroutine serialize(self, stream)
       class(concrete_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

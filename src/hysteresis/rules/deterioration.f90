@@ -28,10 +28,10 @@ module rbs_hysteresis_rules_deterioration
 
 contains
 
-   !> Share that is left of the virgin value, from 1 to 0.
+   !> Share 1 - (E/E_t)^c that is left of a virgin value, from 1 to 0.
    elemental real(wp) function left(self, capacity, energy)
       class(deterioration_type), intent(in) :: self
-      !> E_t [J], 0: none; energy dissipated [J]
+      !> E_t [J], 0: no deterioration; energy E dissipated so far [J]
       real(wp), intent(in) :: capacity, energy
 
       left = 1.0_wp
@@ -40,8 +40,9 @@ contains
       if (energy < capacity) left = 1.0_wp - (energy/capacity)**self%c
    end function left
 
-   !> Share that is left of the strength. With `fade` it begins to fall as fast as without and falls ever more
-   !> slowly, as that of cracks which have worn smooth already: with x = (E/E_t)^c its rate is -left^fade.
+   !> Share that is left of the strength. With `fade` above zero it begins to fall as fast as without, then
+   !> ever more slowly, as the strength of cracks does that have worn smooth: with x = (E/E_t)^c the
+   !> slope of the share s is ds/dx = -s^fade.
    elemental real(wp) function strength_left(self, energy) result(share)
       class(deterioration_type), intent(in) :: self
       !> Energy dissipated [J]
@@ -52,6 +53,7 @@ contains
       if (.not. self%fade > 0.0_wp .or. .not. share < 1.0_wp) return
       x = (energy/self%strength)**self%c
       more = self%fade - 1.0_wp
+      ! The solution of that equation; fade = 1 has a form of its own.
       if (abs(more) < 1.0e-6_wp) then
          share = exp(-x)
       else

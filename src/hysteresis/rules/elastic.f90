@@ -20,6 +20,7 @@ module rbs_hysteresis_rules_elastic
 
 contains
 
+   !> Present the parameters to a visitor.
    subroutine visit(self, v)
       class(elastic_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -27,6 +28,7 @@ contains
       call v%key('k', self%k, stiffness, above_zero, 'stiffness')
    end subroutine visit
 
+   !> Initial stiffness and the only branch.
    subroutine prepare(self)
       class(elastic_rule), intent(inout) :: self
 

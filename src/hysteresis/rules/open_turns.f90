@@ -62,7 +62,8 @@ contains
       class(turn), intent(inout) :: last
       !> Where reloading starts [m or rad] and the virgin slope [N/m or N m/rad]
       real(wp), intent(in) :: start, steepest
-      !> Whether that line is met before its goal
+      !> Whether the turn can be reached: the line to it is not too steep, or the line that was left there is
+      !> met before its goal, and the turn is moved to that point
       logical, intent(out) :: found
       real(wp) :: k, shortfall
 
@@ -100,9 +101,10 @@ contains
       self%list(self%count) = new
    end subroutine push
 
-   !> Place of the newest turn on a side, 0 if there is none.
+   !> Place in the list of the newest turn on a side, 0 if there is none.
    pure integer function newest_of_side(self, side) result(place)
       class(open_turns), intent(in) :: self
+      !> +1 or -1
       integer, intent(in) :: side
 
       do place = self%count, 1, -1
@@ -122,8 +124,8 @@ contains
       place = 0
    end function place_of
 
-   !> Forget the turns whose lines started no farther out, on the other side, than a deformation: their loops
-   !> lie inside the one that begins there.
+   !> Forget the newest turns as long as their lines start at a deformation or beyond it, as seen from their
+   !> side: their loops lie inside the one that begins there.
    pure subroutine forget_inside(self, start)
       class(open_turns), intent(inout) :: self
       real(wp), intent(in) :: start
@@ -134,10 +136,11 @@ contains
       end do
    end subroutine forget_inside
 
-   !> A loop that began on the other side with a turn is closed there: the turns since then lie inside it and
-   !> fade with the way behind.
+   !> A loop that began on the other side with a turn is closed there: the turns since then lie inside it, and
+   !> fade as the motion goes on beyond (`fade`).
    pure subroutine let_fade(self, number, from)
       class(open_turns), intent(inout) :: self
+      !> Number of the turn with which the loop began
       integer(int64), intent(in) :: number
       !> Where it is closed, as seen from the other side
       real(wp), intent(in) :: from
@@ -149,7 +152,8 @@ contains
       end do
    end subroutine let_fade
 
-   !> The other side has turned at a deformation.
+   !> The motion has turned on the other side: the lines of turns that fade start farther out by `rate` times
+   !> the way beyond the deformation from which they fade.
    pure subroutine fade(self, d)
       class(open_turns), intent(inout) :: self
       !> As seen from the other side
@@ -201,6 +205,7 @@ contains
       end do
    end subroutine copy
 
+   !> Whether two turns have the same number, side and point.
    pure logical function same_turn(one, other)
       type(turn), intent(in) :: one, other
 
@@ -208,7 +213,8 @@ contains
                   .not. (abs(one%at%d - other%at%d) > 0.0_wp .or. abs(one%at%f - other%at%f) > 0.0_wp)
    end function same_turn
 
-   !> Room for a number of turns. Those that are there are kept, unless the room becomes larger.
+   !> Set the number of turns and make room for them. The turns that are there are kept only where the room
+   !> need not grow.
    pure subroutine make_room(self, count)
       type(open_turns), intent(inout) :: self
       integer, intent(in) :: count
@@ -222,6 +228,7 @@ contains
       allocate (self%list(count))
    end subroutine make_room
 
+   !> Save or restore a point.
    pure subroutine serialize_point(self, stream)
       class(point), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -229,6 +236,7 @@ contains
       call stream%items(self%d, self%f)
    end subroutine serialize_point
 
+   !> Save or restore a turn.
    pure subroutine serialize_turn(self, stream)
       class(turn), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

@@ -71,6 +71,7 @@ contains
       call self%part(1)%given(-1)%visit(v, negative=.true.)
    end subroutine visit
 
+   !> Values that follow from the parameters of the first part: the negative side, energies, stiffness.
    subroutine prepare(self)
       class(peak_oriented_rule), intent(inout) :: self
       real(wp) :: energy
@@ -92,6 +93,7 @@ contains
       end associate
    end subroutine prepare
 
+   !> Whether any part has yielded so far.
    pure logical function has_yielded(self, memory)
       class(peak_oriented_rule), intent(in) :: self
       class(rule_memory), intent(in) :: memory
@@ -103,13 +105,15 @@ contains
       end select
    end function has_yielded
 
-   !> The energy in whose units capacities are given: f_y d_y, the mean of both sides [J].
+   !> The energy f_y d_y, the mean of both sides, of which capacities are multiples [J].
    pure real(wp) function energy_of(part)
       type(capped_part), intent(in) :: part
 
       energy_of = 0.5_wp*(part%given(1)%f_y*part%given(1)%d_y + part%given(-1)%f_y*part%given(-1)%d_y)
    end function energy_of
 
+   !> Add a message for each relation between parameters that does not hold; `prepare` completes the negative
+   !> side first.
    subroutine check_relations(self, name, messages)
       class(peak_oriented_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -166,13 +170,15 @@ contains
       end subroutine check_capacity
    end subroutine check_relations
 
-   !> Largest product of a force that dissipates and the force at zero deformation of the softening line.
+   !> Largest force times the force that the softening line has at zero deformation, f_cap (1 + d_cap/d_pc)
+   !> [N2 or N2 m2]: divided by the stiffness it is the least capacity.
    pure real(wp) function fastest(side)
       type(backbone_parameters), intent(in) :: side
 
       fastest = side%f_cap**2*(1.0_wp + side%d_cap/side%d_pc)
    end function fastest
 
+   !> The memory of a virgin spring, and its branch; the axial load has no effect.
    subroutine start(self, axial_load, memory, branch)
       class(peak_oriented_rule), intent(in) :: self
       real(wp), intent(in) :: axial_load
@@ -192,6 +198,8 @@ contains
       end select
    end subroutine start
 
+   !> The branch after the present one, which the motion leaves going up (direction = +1) or down (-1). With
+   !> two parts their branches are followed and added up.
    subroutine next(self, memory, branch, direction)
       class(peak_oriented_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
@@ -221,6 +229,7 @@ contains
       type(capped_part), intent(in) :: part
       type(capped_memory), intent(inout) :: memory
       type(segment), intent(inout) :: branch
+      !> Present deformation [m or rad]
       real(wp), intent(in) :: here
       integer, intent(in) :: direction
 
@@ -239,7 +248,7 @@ contains
    !> The branch of two parts together from a deformation on.
    pure type(segment) function sum_of(a, b, share, here) result(branch)
       type(segment), intent(in) :: a, b
-      !> Of a in the force
+      !> Share of part a in the force; present deformation [m or rad]
       real(wp), intent(in) :: share, here
 
       branch%d0 = here
@@ -248,6 +257,7 @@ contains
       branch%k = b%k + share*(a%k - b%k)
       branch%lo = max(a%lo, b%lo)
       branch%hi = min(a%hi, b%hi)
+      ! An end belongs to the sum if it belongs to each part that ends there.
       branch%includes_lower_end = (a%includes_lower_end .or. a%lo < branch%lo) .and. &
            (b%includes_lower_end .or. b%lo < branch%lo)
       branch%includes_upper_end = (a%includes_upper_end .or. a%hi > branch%hi) .and. &
@@ -256,6 +266,7 @@ contains
       if (a%unload_on_reversal == 0) branch%unload_on_reversal = b%unload_on_reversal
    end function sum_of
 
+   !> Become a copy of the memory of another spring of this rule.
    pure subroutine copy(self, other)
       class(peak_oriented_memory), intent(inout) :: self
       class(rule_memory), intent(in) :: other
@@ -270,6 +281,7 @@ contains
       end select
    end subroutine copy
 
+   !> Save or restore the parts; with one part the spring itself keeps the branch.
    pure subroutine serialize(self, stream)
       class(peak_oriented_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

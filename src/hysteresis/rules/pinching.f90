@@ -19,6 +19,8 @@ module rbs_hysteresis_rules_pinching
 
    !> The second part slips.
    type, extends(peak_oriented_rule) :: pinching_rule
+      !> Force at the break of the reloading line over that of the straight line; share of the permanent
+      !> deformation that is missing there
       real(wp) :: kappa_f = unset, kappa_d = unset
    contains
       procedure :: visit, prepare
@@ -26,6 +28,7 @@ module rbs_hysteresis_rules_pinching
 
 contains
 
+   !> Present the parameters to a visitor: those of the rule `peak_oriented`, and two more.
    subroutine visit(self, v)
       class(pinching_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -37,6 +40,7 @@ contains
                  'share of the permanent deformation that is missing at the break')
    end subroutine visit
 
+   !> The second part: a copy of the first that slips.
    subroutine prepare(self)
       class(pinching_rule), intent(inout) :: self
 

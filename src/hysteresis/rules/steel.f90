@@ -89,6 +89,7 @@ module rbs_hysteresis_rules_steel
 
 contains
 
+   !> Present the parameters to a visitor.
    subroutine visit(self, v)
       class(steel_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -117,6 +118,7 @@ contains
                  'by how much more compression wears a bar that has been stretched to 2 d_buckle')
    end subroutine visit
 
+   !> Add a message for each relation between parameters that does not hold.
    subroutine check_relations(self, name, messages)
       class(steel_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -166,6 +168,7 @@ contains
       self%memory = steel_memory(now=steel_state(rate=self%k_element, highest=self%d_y, lowest=-self%d_y))
    end subroutine prepare
 
+   !> The branch after the present one, which the motion leaves going up (direction = +1) or down (-1).
    subroutine next(self, memory, branch, direction)
       class(steel_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
@@ -178,10 +181,12 @@ contains
       end select
    end subroutine next
 
-   !> Set the branch that begins at the end of the present one in a direction.
+   !> Set the branch that begins at the end of the present one in a direction, +1 or -1. It ends where the
+   !> next element comes to its limit, a row of the table begins, the reach begins to grow, or strength ends.
    subroutine find_branch(self, now, branch, direction)
       type(steel_rule), intent(in) :: self
       type(steel_state), intent(inout) :: now
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       !> As seen in the direction: forces, their limits, growth of the limits with the deformation
@@ -194,6 +199,7 @@ contains
       call bring(branch%end_toward(direction))
       reach = now%highest - now%lowest
       end_of_reach = merge(now%highest, now%lowest, direction > 0)
+      ! Beyond the extreme in this direction the plastic reach, and with it the limits, grow.
       growing = direction*(end_of_reach - now%d) <= 0.0_wp
       call find_limits(growing, limit, growth, ahead)
       s = direction*now%s
@@ -214,6 +220,7 @@ contains
       end do
       now%s(:n) = direction*s(:n)
 
+      ! Force and slope of the bank.
       f = 0.0_wp
       if (n < elements) f = now%s(elements)
       f = f + direction*sum(s(:n))
@@ -245,6 +252,7 @@ contains
 
       !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
       subroutine find_limits(growing, limit, growth, ahead)
+         !> Whether the plastic reach grows along the branch; if not, the limits stay
          logical, intent(in) :: growing
          !> (elements) [N], (elements) [N/m]; [m], `unbounded` if no row follows
          real(wp), intent(out) :: limit(elements), growth(elements), ahead
@@ -279,6 +287,7 @@ contains
       !> a bar that is bowed and straightened cracks. The largest elongation is settled where the bar turns
       !> back.
       real(wp) function bowing(direction)
+         !> +1: the bar lengthens, without an effect; -1: it is compressed
          integer, intent(in) :: direction
 
          bowing = 1.0_wp
@@ -292,6 +301,7 @@ contains
       subroutine wear(times, limit, slips, growth, ahead)
          !> Weight of a unit of plastic deformation
          real(wp), intent(in) :: times
+         !> Limits of the elements [N], and which of them slip
          real(wp), intent(in) :: limit(elements)
          logical, intent(in) :: slips(elements)
          !> (elements) [N/m]
@@ -304,6 +314,7 @@ contains
          n = self%limited
          growth = 0.0_wp
          left = 2.0_wp*self%endurance*self%d_y - now%worn
+         ! No strength is left.
          if (left <= near_limit*(now%highest - now%lowest)) then
             now%worn = 2.0_wp*self%endurance*self%d_y
             return
@@ -319,7 +330,7 @@ contains
       end subroutine wear
    end subroutine find_branch
 
-   !> The limits by plastic reach.
+   !> The limits of the elements over k_i d_y, in rows of the plastic reach.
    pure subroutine make_table(self, table)
       type(steel_rule), intent(in) :: self
       type(table_type), intent(out) :: table
@@ -390,6 +401,7 @@ contains
 
    !> Keep limits within bounds, and shift all by one value so that the strength of the bank is unchanged.
    pure subroutine limit_row(y, strength, least, most)
+      !> Limits over k_i d_y, each between `least` and `most`
       real(wp), intent(inout) :: y(:)
       !> Strength of the bank over that of the virgin one
       real(wp), intent(in) :: strength
@@ -417,6 +429,7 @@ contains
       end do
    end subroutine limit_row
 
+   !> Become a copy of the memory of another spring of this rule.
    pure subroutine copy(self, other)
       class(steel_memory), intent(inout) :: self
       class(rule_memory), intent(in) :: other
@@ -427,6 +440,7 @@ contains
       end select
    end subroutine copy
 
+   !> Save or restore the state.
    pure subroutine serialize(self, stream)
       class(steel_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

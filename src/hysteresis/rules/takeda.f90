@@ -84,6 +84,7 @@ module rbs_hysteresis_rules_takeda
 
 contains
 
+   !> Present the parameters to a visitor.
    subroutine visit(self, v)
       class(takeda_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
@@ -99,6 +100,7 @@ contains
                   'what b1 multiplies: k_c, the outer unloading stiffness, or nothing', 'kc kr one')
    end subroutine visit
 
+   !> Values that follow from the parameters: forces at cracking and yield, the virgin memory and branch.
    subroutine prepare(self)
       class(takeda_rule), intent(inout) :: self
 
@@ -109,6 +111,7 @@ contains
       self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
    end subroutine prepare
 
+   !> Add a message for each pair of parameters that do not suit each other.
    subroutine check_relations(self, name, messages)
       class(takeda_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -123,6 +126,7 @@ contains
       call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
    end subroutine check_relations
 
+   !> The branch after the present one, which the motion leaves going up (direction = +1) or down (-1).
    subroutine next(self, memory, branch, direction)
       class(takeda_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
@@ -135,12 +139,16 @@ contains
       end select
    end subroutine next
 
-   !> The next branch at the end of the present one, where the motion continues or reverses.
+   !> The next branch at the end of the present one, where the motion continues or reverses. `outward` means
+   !> away from zero force on the present side. `(now%side)` in parentheses is a copy: the procedure that is
+   !> called sets `now%side`.
    subroutine find_branch(self, now, open, branch, direction)
       type(takeda_rule), intent(in), target :: self
       type(takeda_state), intent(inout), target :: now
       type(open_turns), intent(inout), target :: open
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout), target :: branch
+      !> +1: the motion goes up, -1: down
       integer, intent(in) :: direction
       type(takeda_spring) :: spring
       type(point) :: end_point
@@ -192,7 +200,7 @@ contains
       end select
    end subroutine find_branch
 
-   !> On the backbone of side s from deformation d on.
+   !> On the backbone of side s (+1 or -1) from the deformation d, with its sign, on.
    subroutine follow_backbone(spring, s, d)
       type(takeda_spring), intent(inout) :: spring
       integer, intent(in) :: s
@@ -226,10 +234,12 @@ contains
          now%k_r(s) = outer_stiffness(spring, abs(peak%d), abs(peak%f))
          branch = segment(d0=peak%d, f0=peak%f, k=now%k_r(s))
          if (now%cracked(-s)) then
+            ! To zero force.
             near = peak%d - peak%f/now%k_r(s)
          else if (abs(peak%d) <= rule%d_y) then
             near = -s*rule%d_c                         ! by definition K_r leads to the cracking point
          else
+            ! On through zero to the cracking force of the other side.
             near = peak%d - (peak%f + s*rule%f_c)/now%k_r(s)
          end if
          call branch%lead_outward(s, near=near, far=peak%d, includes_near_end=now%cracked(-s), &
@@ -257,6 +267,7 @@ contains
    !> toward its yield point if it has not yielded and the line to it is steeper.
    subroutine reload_from_outer(spring, zero)
       type(takeda_spring), intent(inout) :: spring
+      !> Deformation there [m or rad]
       real(wp), intent(in) :: zero
       type(point) :: yield
       integer :: s
@@ -274,6 +285,7 @@ contains
    !> Outer unloading has continued to the cracking force of the other side, which cracks.
    subroutine crack_on_reversal(spring, d)
       type(takeda_spring), intent(inout) :: spring
+      !> Deformation there, with its sign [m or rad]
       real(wp), intent(in) :: d
       real(wp) :: zero, k_r, ahead, d_peak
       integer :: s
@@ -282,6 +294,7 @@ contains
          s = -now%side
          now%cracked(s) = .true.
          k_r = now%k_r(-s)
+         ! Before yield K_r leads to the cracking point itself.
          if (abs(now%peak(-s)%d) <= rule%d_y) then
             call follow_backbone(spring, s, d)
             return
@@ -299,7 +312,7 @@ contains
       end associate
    end subroutine crack_on_reversal
 
-   !> Reloading has reached its target.
+   !> Reloading has reached its target, an inner peak (goal_number > 0) or the backbone peak (0).
    subroutine reach_target(spring)
       type(takeda_spring), intent(inout) :: spring
       type(point) :: end_point
@@ -322,9 +335,11 @@ contains
       end associate
    end subroutine reach_target
 
-   !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
+   !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in. Where
+   !> there is no force to unload, the spring reloads to the other side, or goes back where it came from.
    subroutine unload_from_inner_peak(spring, end_point)
       type(takeda_spring), intent(inout) :: spring
+      !> Where the motion has turned, with signs
       type(point), intent(in) :: end_point
 
       associate (now => spring%now, branch => spring%branch, open => spring%open, at => spring%now%aim%at)
@@ -359,6 +374,7 @@ contains
 
       associate (rule => spring%rule, now => spring%now, peak => spring%now%aim%at)
          k_r = now%k_r(now%side)
+         ! A side that has had no outer unloading has no K_r yet.
          if (.not. k_r > 0.0_wp) k_r = now%k_r(-now%side)
          select case (rule%inner)
          case (of_uncracked)
@@ -378,6 +394,7 @@ contains
    !> Continue on the reloading branch that was left at an inner peak; it and all newer peaks are closed.
    subroutine resume_reloading(spring, place)
       type(takeda_spring), intent(inout) :: spring
+      !> Place of the inner peak in the list of open turns
       integer, intent(in) :: place
 
       associate (now => spring%now, branch => spring%branch, open => spring%open)
@@ -413,14 +430,17 @@ contains
    subroutine reload_toward_peak(spring, s, from, zero)
       type(takeda_spring), intent(inout) :: spring
       integer, intent(in) :: s
+      !> Where the spring is, with signs
       type(point), intent(in) :: from
+      !> Deformation at which the excursion to this side began, without force [m or rad]
       real(wp), intent(in) :: zero
 
       spring%now%aim = turn(goal=spring%now%peak(s), start=zero)
       call reload(spring, s, from)
    end subroutine reload_toward_peak
 
-   !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
+   !> The straight line on side s from a point to the target, `now%aim%goal`. The target is its anchor, so
+   !> that a peak is met exactly.
    subroutine reload(spring, s, from)
       type(takeda_spring), intent(inout) :: spring
       integer, intent(in) :: s
@@ -440,6 +460,7 @@ contains
       end associate
    end subroutine reload
 
+   !> Become a copy of the memory of another spring of this rule.
    pure subroutine copy(self, other)
       class(takeda_memory), intent(inout) :: self
       class(rule_memory), intent(in) :: other
@@ -451,6 +472,7 @@ contains
       end select
    end subroutine copy
 
+   !> Save or restore the state and the open turns.
    pure subroutine serialize(self, stream)
       class(takeda_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
