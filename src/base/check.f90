@@ -81,8 +81,9 @@ contains
       end if
    end subroutine check_name
 
-   !> Two numbers must be in order: 'OWNER: k_y = 3 must be below k_c = 2 (REASON)'.
+   !> Add a message unless two numbers are in order: 'OWNER: k_y = 3 must be below k_c = 2 (REASON)'.
    subroutine check_order(owner, name, x, relation, limit_name, limit, reason, messages)
+      !> Owner of the numbers, and key of x, for the message
       character(len=*), intent(in) :: owner, name
       real(wp), intent(in) :: x, limit
       !> 'must be below', 'must not be below', 'must be above' or 'must not be above'

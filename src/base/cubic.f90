@@ -25,6 +25,7 @@ contains
    !> The shares of the step at which the cubic has an extreme, ascending; 1 in place of an extreme that it
    !> does not have within the step.
    pure function turns_of(c) result(s)
+      !> First value, last value, first slope, last slope
       real(wp), intent(in) :: c(4)
       real(wp) :: s(2), a, half, root, q
 
@@ -51,6 +52,7 @@ contains
 
    !> A number that the cubic does not exceed in size within the step.
    pure real(wp) function bound_of(c) result(bound)
+      !> First value, last value, first slope, last slope
       real(wp), intent(in) :: c(4)
 
       bound = max(abs(c(1)), abs(c(2))) + beyond_ends*(abs(c(3)) + abs(c(4)))
@@ -58,6 +60,7 @@ contains
 
    !> The value of the cubic within the step that is largest in size, with its sign.
    pure real(wp) function largest_of(c) result(largest)
+      !> First value, last value, first slope, last slope
       real(wp), intent(in) :: c(4)
       real(wp) :: value(4)
 
@@ -67,6 +70,7 @@ contains
 
    !> The first share at which the cubic reaches a value from below; 2 if it does not within the step.
    pure real(wp) function first_at(c, value) result(s)
+      !> First value, last value, first slope, last slope; the value to reach
       real(wp), intent(in) :: c(4), value
       real(wp) :: node(4), low, high
       integer :: i
@@ -74,6 +78,7 @@ contains
       ! Between two of these shares the cubic only rises or only falls.
       node = [0.0_wp, turns_of(c), 1.0_wp]
       i = findloc(cubic_at(node, c(1), c(2), c(3), c(4)) >= value, .true., dim=1)
+      ! Reached at the start, or at none of these shares.
       s = merge(0.0_wp, 2.0_wp, i == 1)
       if (i < 2) return
       ! It rises between these two: bisect.

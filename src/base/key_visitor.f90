@@ -73,6 +73,7 @@ module rbs_base_key_visitor
    end type key_visitor
 
    abstract interface
+      !> Call the procedures `key`, `word` and `long_text` of the visitor, once for each component.
       subroutine visit_record(self, v)
          import :: key_visitor, visited_record
          class(visited_record), intent(inout) :: self
@@ -235,8 +236,8 @@ contains
       choice = nint(x)
    end subroutine choice_key
 
-   !> The parameters of a rule, a value for each of its keys; a word is its number among the choices. The rule
-   !> checks them.
+   !> The parameters of a rule, a value for each of its keys; a word is its number among the choices. A check
+   !> does nothing here, as the rule itself is checked.
    subroutine parameters(self, keys, value)
       class(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: keys(:)

@@ -10,6 +10,7 @@ module rbs_base_linalg
    public :: solve_tridiagonal, solve_general_band, solve_dense
 
    interface
+      !> LAPACK: solve with a symmetric positive definite tridiagonal matrix, diagonal d and off-diagonal e.
       subroutine dptsv(n, nrhs, d, e, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, ldb
@@ -17,6 +18,7 @@ module rbs_base_linalg
          integer, intent(out) :: info
       end subroutine dptsv
 
+      !> LAPACK: factor a band matrix with pivots, and solve.
       subroutine dgbsv(n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb
@@ -24,6 +26,7 @@ module rbs_base_linalg
          integer, intent(out) :: ipiv(*), info
       end subroutine dgbsv
 
+      !> LAPACK: solve with the factor and the pivots of `dgbsv`.
       subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
          import :: wp
          character(len=1), intent(in) :: trans
@@ -33,6 +36,7 @@ module rbs_base_linalg
          integer, intent(out) :: info
       end subroutine dgbtrs
 
+      !> LAPACK: factor a general matrix with pivots, and solve.
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, lda, ldb

@@ -94,6 +94,7 @@ contains
    elemental real(wp) function out_of_si(self, value, unit)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
+      !> The SI unit, as in `into_si`
       character(len=*), intent(in) :: unit
 
       out_of_si = converted(self, value, unit, -1)
@@ -104,6 +105,7 @@ contains
    elemental real(wp) function converted(self, value, unit, direction)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
+      !> The SI unit, of N, m, kg, s and rad: 'N/m', 'kg m2'
       character(len=*), intent(in) :: unit
       !> +1: to SI, -1: from SI
       integer, intent(in) :: direction
@@ -127,8 +129,8 @@ contains
       end do
    end function converted
 
-   !> The unit of the user for one character of an SI unit, if the character means one: 'N' in 'N m', but
-   !> not 'r' in 'rad'.
+   !> The unit of the user for character i of an SI unit, if the character means one: 'N' in 'N m', but not
+   !> 'r' in 'rad'. The mass is known by its k: 'kg'.
    pure subroutine unit_of_letter(self, unit, i, one, found)
       class(unit_system), intent(in) :: self
       character(len=*), intent(in) :: unit

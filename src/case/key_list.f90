@@ -191,6 +191,7 @@ contains
    subroutine append_rows(buffer, keys)
       type(text_buffer), intent(inout) :: buffer
       type(key_type), intent(in) :: keys(:)
+      !> Name, kind, unit, bounds and default, each at its column
       character(len=77) :: columns
       character(len=48) :: bound
       integer :: i

@@ -115,6 +115,7 @@ contains
          else
             call case%visit_group(group, v, number)
          end if
+         ! A case needs these three, even if all their values are defaults.
          if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
             call text%group(group, v%entry(:v%listed))
          end if
@@ -248,7 +249,7 @@ contains
 
    end subroutine add_group
 
-   !> Write `&name key = value, ... /` in lines of limited length.
+   !> Write a group, `&name key = value, ... /`, in lines of limited length.
    subroutine namelist_group(self, name, entry)
       type(case_text), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -283,7 +284,7 @@ contains
 
    contains
 
-      !> Append a piece after a blank, or on the next line.
+      !> Append a piece after a blank, or on the next line where it would not fit; move `column` to the end.
       subroutine piece(text)
          character(len=*), intent(in) :: text
 

@@ -88,6 +88,7 @@ contains
          history%name = path(index(path, '/', back=.true.) + 1:)
          do i = 1, at2_head
             call file%next_line(first, last, found)
+            ! The line before the last one of the head states the unit.
             if (i /= at2_head - 1) cycle
             if (index(file%text(first:last), 'ACCEL') == 0 .or. index(file%text(first:last), ' G') == 0) then
                call fatal_error(error, bad_input, path//" line 3: '"//snippet(file%text(first:last))// &
@@ -108,6 +109,7 @@ contains
             count = count + 1
             numbers(count) = value
          end do
+         ! Without both numbers the head is refused below.
          if (count < 2) numbers = 0.0_wp
          if (.not. (numbers(1) > 1.0_wp .and. numbers(1) < 1.0e8_wp .and. numbers(2) > 0.0_wp)) then
             call fatal_error(error, bad_input, path//" line 4: '"//snippet(file%text(first:last))// &
@@ -371,7 +373,7 @@ contains
       call file%go_back()
    end function is_at2
 
-   !> The count on the second line of a PEER file, alone or followed by one 0; -1 if the line is not a count.
+   !> The count on the second line of a PEER file, alone or followed by one 0; -1 if that line has none.
    integer function count_of(line)
       character(len=*), intent(in) :: line
       type(field_list) :: fields

@@ -246,7 +246,7 @@ contains
       agrees = index(comment, '['//trim(unit)//']') > 0 .or. index(comment, '('//trim(unit)//')') > 0
    end function agrees
 
-   !> Values must be small enough that conversion, scale and squares do not overflow.
+   !> Refuse values that are so large that conversion, scale or squares would overflow.
    subroutine check_range(value, path, column, largest, error)
       real(wp), intent(in) :: value(:)
       character(len=*), intent(in) :: path

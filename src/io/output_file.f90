@@ -141,6 +141,7 @@ contains
       integer(int64) :: now, second
       integer :: at, length
 
+      ! In counts of the clock, of which `second` make one second.
       call system_clock(now, second)
       if (self%used + len(text) > buffer_size .or. now - self%flushed > second) then
          call self%flush(error)

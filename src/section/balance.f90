@@ -106,6 +106,7 @@ contains
 
          rise = next%curvature - last%curvature
          guess = last%eps0 + last%trend*rise
+         ! How far from the guess Newton's method may go: beyond it another branch may lie.
          near = 2.0e-5_wp + 0.3_wp*abs(rise)*section%shape%depth
          limit = tolerance*force_scale(section)
          next%eps0 = guess

@@ -186,7 +186,8 @@ contains
       high = [high(:i - 1), place, high(i:)]
    end subroutine cut_at
 
-   !> Lower and upper edge and middle of each strip [m]; those of mirrored strips differ by their sign alone.
+   !> Lower and upper edge and middle of each of `count` strips of equal height [m], from the same formula on
+   !> both sides, so that mirrored strips differ by the sign alone.
    pure subroutine find_edges(outline, count, low, high, middle)
       type(shape_type), intent(in) :: outline
       integer, intent(in) :: count

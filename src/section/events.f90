@@ -194,6 +194,7 @@ contains
          !> The state before the largest moment of the march, and the curvature after it [1/m]
          type(state_type), intent(in) :: first
          real(wp), intent(in) :: end
+         !> The largest moment of the march, raised where a larger one is found
          type(point_type), intent(inout) :: peak
          real(wp), parameter :: golden = 0.6180339887498949_wp
          type(state_type) :: state
@@ -322,6 +323,7 @@ contains
    pure real(wp) function bar_ratio(section, state, at_rupture)
       type(section_type), intent(in) :: section
       type(state_type), intent(in) :: state
+      !> Whether the strain at rupture counts, else that at yield
       logical, intent(in) :: at_rupture
       real(wp) :: limit
       integer :: i

@@ -72,7 +72,7 @@ contains
       type(shape_type), intent(in) :: outline
       !> Whether the hoops are round
       logical, intent(in) :: round
-      !> Reductions of width and depth from the outline to the hoop centre lines [m]
+      !> Reductions of the whole width and depth from the outline to the hoop centre lines [m]
       real(wp), intent(in) :: width_by, depth_by
       type(shape_type), allocatable, intent(out) :: core
 

@@ -292,7 +292,7 @@ contains
       self%on_end = on_end
    end function slope_ahead
 
-   !> Sort indices by values, by insertion: there are few.
+   !> Sort indices by the values that they point to, ascending, by insertion: there are few.
    pure subroutine order_by(value, order)
       real(wp), intent(in) :: value(:)
       integer, intent(inout) :: order(:)

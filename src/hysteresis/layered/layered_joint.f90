@@ -75,6 +75,7 @@ contains
    subroutine next(self, memory, branch, direction)
       class(layered_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 
@@ -114,6 +115,7 @@ contains
    !> each side where the first of its layers ends.
    subroutine find_branch(section, direction, branch)
       type(fibre_section), intent(inout) :: section
+      !> +1: the rotation increases, -1: it decreases
       integer, intent(in) :: direction
       type(segment), intent(out) :: branch
       real(wp) :: near, far

@@ -60,6 +60,7 @@ contains
    subroutine next(self, memory, branch, direction)
       class(bilinear_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       real(wp) :: d, f

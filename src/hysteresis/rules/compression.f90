@@ -44,6 +44,7 @@ contains
    subroutine next(self, memory, branch, direction)
       class(compression_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 

@@ -152,8 +152,8 @@ contains
       end do
    end subroutine let_fade
 
-   !> The motion has turned on the other side: the lines of turns that fade start farther out by `rate` times
-   !> the way beyond the deformation from which they fade.
+   !> The motion has turned on the other side: the starts of lines whose turns fade move inward, toward their
+   !> own side, by `rate` times the way beyond the deformation from which they fade.
    pure subroutine fade(self, d)
       class(open_turns), intent(inout) :: self
       !> As seen from the other side

@@ -155,8 +155,10 @@ contains
          end do
       end subroutine refuse_idle_decay
 
-      !> Nothing deteriorates faster over the deformation than the spring is stiff.
+      !> Add a message if so small a capacity lets the force fall faster over the deformation than the spring
+      !> is stiff.
       subroutine check_capacity(capacity, key)
+         !> E_t [J], 0: none; its key
          real(wp), intent(in) :: capacity
          character(len=*), intent(in) :: key
          real(wp) :: least, unit
@@ -203,6 +205,7 @@ contains
    subroutine next(self, memory, branch, direction)
       class(peak_oriented_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
       real(wp) :: here

@@ -172,6 +172,7 @@ contains
    subroutine next(self, memory, branch, direction)
       class(steel_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 
@@ -235,7 +236,7 @@ contains
 
    contains
 
-      !> Move along the present branch to its end at d.
+      !> Bring forces, wear and extremes along the present branch to its end at the deformation d [m].
       subroutine bring(d)
          real(wp), intent(in) :: d
          integer :: n
@@ -372,6 +373,7 @@ contains
    !> Make a corner of the plateau a row; it replaces a row next to it.
    pure subroutine insert_row(table, q)
       type(table_type), intent(inout) :: table
+      !> Plastic reach of the corner
       real(wp), intent(in) :: q
       integer :: place
 
@@ -389,6 +391,7 @@ contains
    !> x = 0 at c with c^p + m^p = 1, p = R/(R + 1). The polygon is moved from outside the curve to both sides
    !> of it; its asymptote is exact.
    pure function round_limits(r) result(x)
+      !> Roundness R; limits over k_i d_y
       real(wp), intent(in) :: r
       real(wp) :: x(yielding), c(0:yielding), p
 

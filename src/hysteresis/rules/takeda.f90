@@ -130,6 +130,7 @@ contains
    subroutine next(self, memory, branch, direction)
       class(takeda_rule), intent(in) :: self
       class(rule_memory), intent(inout) :: memory
+      !> The branch that ends, replaced by its successor
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 
@@ -350,6 +351,7 @@ contains
             now%aim%number = now%peaks
             call open%push(now%aim)
          else if (abs(end_point%d - now%aim%start) > 0.0_wp) then
+            ! It has moved along the axis: reload to the other side from here.
             call reload_from_inner(spring, -now%side, end_point)
             return
          else if (open%count > 0) then
@@ -357,6 +359,7 @@ contains
             now%aim = open%list(open%count)
             now%side = now%aim%side
          else
+            ! No inner peak is open: on the outer unloading of the other side that it came from.
             now%side = -now%side
             call unload_from_peak(spring, now%peak(now%side))
             return
