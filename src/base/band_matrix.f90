@@ -490,6 +490,7 @@ contains
          right = b
          if (.not. self%has_pivots) call mirror()
          call solve()
+         ! Only a scaled matrix has pivots near one; of another, small pivots say nothing.
          associate (pivot => self%general(2*self%width + 1, :))
             if (.not. (allocated(self%scale) .and. any(abs(pivot) < round_off))) return
             where (abs(pivot) < round_off) pivot = sign(round_off, pivot)

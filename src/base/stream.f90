@@ -68,6 +68,7 @@ contains
          return
       end if
       self%count = self%at
+      ! Room for the numbers is doubled where it is too small.
       if (.not. allocated(self%value)) allocate (self%value(max(first_room, self%at)))
       if (self%at <= size(self%value)) return
       allocate (longer(2*self%at))

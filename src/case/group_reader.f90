@@ -242,7 +242,7 @@ contains
       key = self%keys(key_index)
       text = given
       if (key%kind == word_kind) then
-         ! As the key lists it
+         ! The word in the letters in which the key lists it.
          i = 1
          do while (choice_name(key, i) /= '')
             if (lower(choice_name(key, i)) == lower(given)) text = trim(choice_name(key, i))
@@ -270,6 +270,7 @@ contains
       call self%visitor%put(key%name, text=text)
       call self%visit_open()
       call self%visitor%end_check(messages)
+      ! Numbers of later groups are in these units.
       if (self%group == 'units') self%units = self%case%units%system()
       ! A shape brings keys too.
       if (key%name /= 'shape') return

@@ -69,9 +69,10 @@ contains
       end select
    end function opening_of
 
-   !> Rotation from which a layered joint counts its own [rad]; 0 of other springs.
+   !> Rotation of a section from which the rotation of its layered joint is counted [rad]; 0 of other springs.
    pure real(wp) function rest_of(springs, i) result(rest)
       type(spring_array), intent(in) :: springs
+      !> Flexural spring of the joint
       integer, intent(in) :: i
 
       rest = 0.0_wp

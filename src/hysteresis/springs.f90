@@ -426,6 +426,7 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       if (self%axial_load_varies) then
+         ! The ways of joints depend on their axial loads too, so no branch is entered again.
          call go_back(self)
          call self%move_all(d)
          return
@@ -472,7 +473,8 @@ contains
       end do
    end subroutine leave_lines
 
-   !> Put a spring where it entered its present branch.
+   !> Put spring i, which is at the mark, where it entered its present branch in the last move; the branches
+   !> on this way count as left again.
    pure subroutine enter_again(self, i)
       type(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -791,6 +793,7 @@ contains
          ! A joint stays if neither its rotation nor its axial load changes.
          if (.not. abs(d(i) - self%d(i)) + &
              abs(self%target_axial_load(i) - self%reference_axial_load(i)) > 0.0_wp) cycle
+         ! A trial that is marked saves the joint first.
          if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
          select type (section => self%slot(i)%memory)
          type is (fibre_section)

@@ -70,6 +70,7 @@ contains
       if (.not. self%units%is_si()) value = self%units%out_of_si(row, self%si)
       at = 0
       do i = 1, size(row)
+         ! The number has 24 characters at most, and blanks before it that are left out; then comes the comma.
          write (number, '(es24.16e3)') value(i)
          first = verify(number, ' ')
          self%buffer(at + 1:at + width - first) = number(first:width - 1)

@@ -115,7 +115,8 @@ contains
             call reader%put_text(key_index, text, messages)
             return
          end if
-         ! All subscripted values of a name are put together when the first of them is read.
+         ! All subscripted values of a name are put together when the first of them is read; for the others
+         ! `number` comes back without values.
          if (scanned%entry(i)%subscript > 0) call gather(group, i, reader%keys(key_index), number)
          if (allocated(number)) call reader%put_numbers(key_index, number)
       end subroutine put_entry

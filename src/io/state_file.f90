@@ -40,7 +40,8 @@ contains
 
    contains
 
-      !> Read the first line, the remarks and the numbers.
+      !> Read the first line, the remarks (#), the number of numbers, and the numbers into the stream;
+      !> `understood` says whether all were there.
       subroutine read_numbers()
          character(len=80) :: line
          integer :: status, i, count

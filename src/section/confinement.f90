@@ -126,7 +126,8 @@ contains
       real(wp) :: inset, gaps, clear, corners, held
 
       if (form%even) then
-         ! With two legs the four corners alone are held; from three on the bars stand for all of them.
+         ! With two legs the four corners alone are held; from three on the held bars are taken as spread
+         ! evenly around the core. `corners` is the share of the first form: 1 for two legs, 0 from three on.
          corners = min(max(3.0_wp - core%hoops%legs, 0.0_wp), 1.0_wp)
          held = 4.0_wp*core%hoops%legs - 4.0_wp
          if (is_given(form%held)) held = form%held
@@ -136,6 +137,7 @@ contains
                   ((core%width - core%bar_diameter)**2 + (core%depth - core%bar_diameter)**2)
          return
       end if
+      ! Bars touch the hoops: between the outer bars the size less `inset`, cut into gaps by the legs.
       inset = core%hoops%diameter + core%bar_diameter
       gaps = max(1.0_wp, core%hoops%legs - 1.0_wp)
       clear = max(0.0_wp, (core%width - inset)/gaps - core%bar_diameter)

@@ -56,7 +56,8 @@ module rbs_section_mcft_layer
 
 contains
 
-   !> Factor of the compressive strength of cracked concrete (Vecchio and Collins 1986).
+   !> Factor of the compressive strength of cracked concrete, 1/(0.8 + 170 eps_1) but not above 1 (Vecchio and
+   !> Collins 1986); 1 without a crack.
    elemental subroutine crack_softening(cracking, eps_1, factor, slope)
       !> Strain at cracking, and principal tensile strain
       real(wp), intent(in) :: cracking, eps_1

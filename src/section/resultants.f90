@@ -44,8 +44,8 @@ contains
       laws%core%tension = tension
    end function section_laws
 
-   !> Sum over strips and bars. The strip that contains the tip of the crack is cut there, so that the axial
-   !> force is a continuous function of the strain although the stress drops at cracking.
+   !> Resultants, as sums over strips and bars. The strip that contains the tip of the crack is cut there, so
+   !> that the axial force is a continuous function of the strain although the stress drops at cracking.
    pure type(resultants_type) function resultants(section, laws, eps0, curvature) result(sums)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
@@ -107,7 +107,8 @@ contains
             sums%m = sums%m - stress*area*y
             sums%stiffness = sums%stiffness + tangent*area
          end do
-         ! The tip moves by d(eps_0)/phi, and the concrete that it passes returns to f_t.
+         ! With d(eps_0) the tip moves by d(eps_0)/phi, and the stress of the concrete that it passes changes
+         ! from that just beyond cracking to f_t.
          strain = laws%shell%ft/laws%shell%ec*(1.0_wp + 1.0e-9_wp)
          call concrete_both(laws%shell, -strain, after, tangent)
          sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)

@@ -139,6 +139,7 @@ contains
          if (.not. diagram%knee_found .and. beyond_knee(here%point, knee_stiffness)) then
             diagram%knee_found = .true.
             diagram%knee = here%point
+            ! The knee lies between the last curvature and this one.
             call halve(here%point%curvature, 1.0e-9_wp, last, knee_stiffness, diagram%knee)
          end if
          if (sheared .or. lost) exit
@@ -187,7 +188,8 @@ contains
       subroutine bend(curvature, state, sheared, lost)
          real(wp), intent(in) :: curvature
          type(shear_state), intent(inout) :: state
-         !> Whether a layer no longer carries the shear; whether the section no longer carries its axial load
+         !> Whether a layer no longer carries the shear, or if coupled the equilibrium is lost; whether the
+         !> section no longer carries its axial load
          logical, intent(out) :: sheared, lost
          real(wp) :: tau(size(state%layers)), eps_x
          logical :: carried
@@ -263,7 +265,7 @@ contains
       beyond_knee = point%strain > 0.0_wp .and. point%force <= stiffness*point%strain
    end function beyond_knee
 
-   !> The curvatures must be positive and increase.
+   !> Add a message unless the curvatures are positive and increase.
    subroutine check_curvatures(curvature, messages)
       !> [1/m]
       real(wp), intent(in) :: curvature(:)

@@ -46,8 +46,8 @@ contains
       integer, intent(in) :: n
       !> Distances [m], slopes [N/m] and ends of the lines [m]; all finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
-      !> A layer this close to its end is on it, with `clearance` [m]; -1, 0 or 1 as in `segment`, and 1 where
-      !> that is 0, else 0
+      !> A layer this close to its end is on it, with `clearance` [m]; +1 on a branch that is left at once
+      !> when the layer closes, -1 when it opens, else 0; 1 where the branch leads both ways, else 0
       real(wp), intent(in) :: slack(n), unload_on_reversal(n), both_ways(n)
       !> Opening w [m], rotation phi [rad], and their rates
       real(wp), intent(in) :: w, phi, opening_rate, rotation_rate

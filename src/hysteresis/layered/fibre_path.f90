@@ -251,6 +251,7 @@ contains
          integer, intent(in) :: j
          integer :: p
 
+         ! Layers with one slope for both ways, then the others: those up to corner j open, the rest close.
          total = 0.0_wp
          do p = 1, self%count
             if (.not. abs(opening(p) - closing(p)) > 0.0_wp) total = total + opening(p)

@@ -216,6 +216,7 @@ contains
       integer :: i
 
       do i = corner_before(self, start), self%last - 1
+         ! At corner i + 1 the line is still below the backbone.
          if (self%f(i + 1) > k*(self%d(i + 1) - start)) cycle
          slope = slope_after(self, i)
          meeting = self%d(i + 1)

@@ -191,6 +191,7 @@ contains
          select case (now%kind)
          case (envelope)
             if (c > 0.0_wp) then
+               ! The state keeps forces without wear.
                call leave_envelope(spring, c, f/now%strength)
                if (self%rubs) then
                   call rub(spring, c, f)
