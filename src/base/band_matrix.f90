@@ -132,7 +132,8 @@ contains
       self%positive = self%negative == 0
       self%serves = self%positive
       if (.not. allocated(self%scale)) return
-      ! The factor holds one over the pivots.
+      ! Stiffness over pivot, as the factor holds one over the pivots. If a pivot is too small a share of the
+      ! stiffness, the matrix counts as not positive definite, or the factor does not serve.
       associate (share => self%triangle(1, :)*self%scaled_stiffness)
          self%positive = self%positive .and. maxval(share) < 1.0_wp/no_stiffness
          self%serves = maxval(abs(share)) < 1.0_wp/least_pivot

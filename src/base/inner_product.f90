@@ -26,6 +26,7 @@ contains
          part = part + a(i:i + 3)*b(i:i + 3)
       end do
       inner_product = (part(1) + part(2)) + (part(3) + part(4))
+      ! The last one to three, which make no four.
       do i = m - mod(m, 4) + 1, m
          inner_product = inner_product + a(i)*b(i)
       end do

@@ -314,6 +314,7 @@ contains
       !> One of the dimensions `stiffness`, `force`, `deformation`, or a unit; group of the spring
       character(len=*), intent(in) :: unit, group
 
+      ! Moments and rotations in flexure; forces and lengths in all other springs.
       si = unit
       select case (unit)
       case (stiffness)

@@ -191,6 +191,7 @@ contains
          if (.not. allocated(list%entry(i)%joint)) cycle
          column%footing = column%footing .or. any(list%entry(i)%joint == 0)
       end do
+      ! A spring of joint 0 means a footing.
       first = merge(0, 1, column%footing)
       last = column%joint_number(column%joints())
       range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
@@ -198,6 +199,7 @@ contains
       known = messages%count
       call refuse_frame()
       call check_ids(list, messages)
+      ! Layers are placed only if the numbers of their springs are sound.
       numbered = messages%count == known
       call place_group('shear', column%shear)
       call place_group('flexure', column%flexure)

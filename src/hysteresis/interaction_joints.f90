@@ -101,7 +101,7 @@ contains
    !> The present lines of springs and of layers on planes.
    pure subroutine list_lines(springs, lines)
       type(spring_array), intent(in) :: springs
-      !> Made at the first call, and brought up to date
+      !> Its length is set at the first call, its lines at each
       type(line_list), intent(inout) :: lines
       integer :: i, j
 

@@ -79,7 +79,7 @@ contains
    !> Virgin springs with rules that have been made.
    subroutine create(self, rules, work_source, axial_load, coordinates, joints)
       class(spring_array), intent(out) :: self
-      !> They stay where they are, and must be there as long as the springs
+      !> The rules are not copied: they must be there as long as the springs
       type(spring_rules), intent(in), target :: rules
       !> First and last of the springs whose work each spring may decay with, 0: none (2, count)
       integer, intent(in) :: work_source(:, :)
@@ -107,7 +107,8 @@ contains
       do i = 1, n
          self%slot(i)%rule => rules%list(rules%of(i))%rule
          associate (rule => self%slot(i)%rule)
-            ! Equal springs often follow each other: the state of the one before is copied.
+            ! Equal springs often follow each other: the memory of the one before is copied, and `line` is
+            ! still its line.
             before = max(i - 1, 1)
             if (allocated(self%slot(before)%memory) .and. rules%of(i) == rules%of(before) .and. &
                 .not. abs(axial_load(i) - axial_load(before)) > 0.0_wp) then
@@ -320,6 +321,7 @@ contains
          call self%journal%keep(i, line, self%slot(i))
          call self%journal%leave_branch(i, direction, merge(self%upper(i), self%lower(i), direction > 0))
       end if
+      ! On a reversal it stays where it is.
       if (self%unload_on_reversal(i) /= -direction) call advance_on_branch(self, i, &
            merge(line%hi, line%lo, direction > 0))
       flexural_work = 0.0_wp

@@ -293,6 +293,7 @@ contains
                return
             end if
             associate (text => self%text(self%at:self%at + length - 1))
+               ! With a star a count must stand before it, and a value behind it; 0 marks a fault.
                star = index(text, '*')
                if (star > 0) word%times = 0
                if (star > 1 .and. star <= 7 .and. star < length) then

@@ -295,6 +295,7 @@ contains
 
    !> Sort indices by the values that they point to, ascending, by insertion: there are few.
    pure subroutine order_by(value, order)
+      !> Values, and the places among them that are sorted
       real(wp), intent(in) :: value(:)
       integer, intent(inout) :: order(:)
       integer :: i, j, item

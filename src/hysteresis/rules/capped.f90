@@ -196,10 +196,11 @@ contains
          if (now%yielded) now%dissipated(now%side) = now%dissipated(now%side) + (now%work - now%work_at_zero)
          now%work_at_zero = now%work
          call turns_of(-now%side)%fade(now%turned%at%d)
-         ! A turn behind others that were closed takes their place.
+         ! A turn behind others that were closed takes the number of the oldest of them.
          now%turns = now%turns + 1_int64
          now%turned%number = min(now%closed, now%turns)
          call turns_of(now%side)%push(now%turned)
+         ! The way of this excursion, which the other side looks back on.
          now%distance_back = now%turned%at%d - now%entered
          call enter(spring, -now%side, zero)
       end associate

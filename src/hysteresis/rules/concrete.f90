@@ -116,7 +116,7 @@ contains
 
       self%initial_stiffness = self%k
       self%rubs = self%friction > 0.0_wp
-      ! The envelope begins at zero.
+      ! A closing spring at the lower end of this branch, at zero, goes on to the envelope: its first branch.
       branch%lo = 0.0_wp
       call find_branch(self, virgin, branch, -1)
       self%branch = branch
@@ -496,7 +496,7 @@ contains
       real(wp) :: x, r
 
       x = c/self%d_peak
-      ! But for round-off the two are apart.
+      ! Input has k above the secant; if only round-off parts them, r is large and the curve straight.
       r = self%k/max(self%k - self%f_peak/self%d_peak, epsilon(1.0_wp)*self%k)
       curve = self%f_peak*x*r/(r - 1.0_wp + x**r)
    end function curve

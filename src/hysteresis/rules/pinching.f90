@@ -40,7 +40,7 @@ contains
                  'share of the permanent deformation that is missing at the break')
    end subroutine visit
 
-   !> The second part: a copy of the first that slips.
+   !> The second part: a copy of the first that slips. It has the share 1 - kappa_f of the force.
    subroutine prepare(self)
       class(pinching_rule), intent(inout) :: self
 
