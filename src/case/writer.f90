@@ -167,6 +167,7 @@ contains
             do j = 1, layer_springs%count
                if (layer_springs%entry(j)%spring%same_as(layer)) exit
             end do
+            ! Without an equal one j is the number of a new spring, which becomes its id.
             layers%layer(i) = j
             if (j <= layer_springs%count) cycle
             call layer_springs%add('layer_spring', '', 0)

@@ -226,6 +226,7 @@ contains
                call solve_layer(layers(i), curvature*strips%y(i) - eps0, tau(i), layer_states(i), carried)
                if (.not. carried) return
                stress = stress_of_state(layers(i), layer_states(i))
+               ! Layers take tension as positive, forces compression.
                concrete_force(i) = -stress%sigma_x*strips%area(i)
             end do
             do i = 1, size(bar_force)

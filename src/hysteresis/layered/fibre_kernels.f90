@@ -82,6 +82,7 @@ contains
          to_hi = (hi(i) - d)*per_v
          ahead(i) = max(to_lo, to_hi) + still
          nearest = min(nearest, ahead(i))
+         ! The second term is above zero if the branch of the layer leads in the direction of v, or both ways.
          least_clearance = min(least_clearance, min(ahead(i) - (clearance + slack(i))*abs(per_v), &
                                           unload_on_reversal(i)*v + both_ways(i) + still))
          least_both = min(least_both, both_ways(i))

@@ -179,6 +179,7 @@ contains
 
       text = ''
       if (carries_axial_load(rule, axial_load)) return
+      ! The load that they carry lies between zero and the one that is refused.
       carried = 0.0_wp
       refused = axial_load
       do i = 1, 50

@@ -206,6 +206,8 @@ contains
             call backbone%draw(given)
             left = law%left(law%target, energy)
             if (left < now%target_left(s)) then
+               ! The peak grows as the share that is left of 1/peak falls; not beyond all meaning, and not
+               ! beyond rupture.
                moved = distant*(given%d_cap + given%d_pc)
                if (left*moved > now%peak(s)*now%target_left(s)) moved = now%peak(s)*now%target_left(s)/left
                if (is_given(given%d_u)) moved = min(moved, max(now%peak(s), given%d_u))

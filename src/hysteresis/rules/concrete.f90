@@ -456,6 +456,7 @@ contains
    !> strength falls with the way. There is no force, so neither acts at once.
    subroutine widen(spring, c)
       type(concrete_spring), intent(inout) :: spring
+      !> Closing where the opening ended [m], below the plastic closing
       real(wp), intent(in) :: c
       !> Width of the opening where it began and where it ended, from the plastic closing; the part of this
       !> way up to the widest opening so far; the way as a number of full openings

@@ -402,7 +402,7 @@ contains
       x = (c(1:) - c(:yielding - 1))/share
    end function round_limits
 
-   !> Keep limits within bounds, and shift all by one value so that the strength of the bank is unchanged.
+   !> Keep limits within bounds, and shift all by one value c so that the bank has a given strength.
    pure subroutine limit_row(y, strength, least, most)
       !> Limits over k_i d_y, each between `least` and `most`
       real(wp), intent(inout) :: y(:)
