@@ -368,6 +368,14 @@ def test_rest_follows_the_shorter_record_of_a_case():
     assert case_of_text(saved) == case_of_text(text)
 
 
+def test_a_record_along_y_in_another_unit_is_told(house):
+    record = 981.0 * np.sin(np.arange(20))
+    with pytest.warns(AccuracyWarning, match="no ground has moved with more than 5 g"):
+        rbsdem.time_history(
+            house, 0.01 * np.arange(20), ground_acceleration_y=record, method="newmark", dt=0.01
+        )
+
+
 @pytest.mark.usefixtures("without_figures")
 def test_the_intensity_of_a_pair_is_of_both_components(house, tmp_path):
     pairs = {"a": (swings(0), swings(1)), "b": (swings(2), swings(0))}

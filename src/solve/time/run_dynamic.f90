@@ -11,7 +11,8 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial, signals, signal_names
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, sideways, vertical, top_axial, signals, &
+                               signal_names
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_pair45, only: pair45_scheme
@@ -208,7 +209,7 @@ contains
       do i = 1, signals
          if (allocated(error) .or. .not. loads%signal(i)%acts()) cycle
          call check_values(loads%signal(i)%value, trim(signal_names(i)), error)
-         if (i /= horizontal .and. i /= vertical) cycle
+         if (.not. any(i == [horizontal, sideways, vertical])) cycle
          task%summary%peak_ground = max(task%summary%peak_ground, maxval(abs(loads%signal(i)%value)))
       end do
       if (.not. allocated(error) .and. allocated(initial%deformation)) then
