@@ -168,7 +168,6 @@ contains
          call unit_of_letter(self, unit, i, one, found)
          if (found) then
             name = trim(name)//one%name
-            if (unit(i:i) /= 'k') cycle
          else if (i > 1 .and. unit(i:i) == 'g') then
             ! The g of kg: k has named the unit of mass.
             cycle

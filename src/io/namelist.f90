@@ -169,6 +169,7 @@ contains
             number(total + 1:total + times) = value
             total = total + times
          end do
+         ! From here on the place of the last value, counted from the subscript; `min` keeps the sum in range.
          total = min(entry%total, huge(1) - entry%subscript) + max(entry%subscript - 1, 0)
          if (entry%subscript > 0 .and. key%most == 1) then
             call messages%add(location//"'"//trim(entry%name)//"' takes no subscript")

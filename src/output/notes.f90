@@ -274,8 +274,8 @@ contains
          if (.not. bending(stiff) > far_stiffer*bending(soft)) return
          call notes%add("member_kind '"//trim(frame%kind(stiff)%name)//"': it is "// &
                         to_text(bending(stiff)/bending(soft))//" times as stiff in bending as '"// &
-                        trim(frame%kind(soft)%name)//"', which costs as many digits of the results; a "// &
-                        "rigid member has interior = 'rigid' and no springs")
+                        trim(frame%kind(soft)%name)//"', and each factor of ten costs a digit of the "// &
+                        "results; a rigid member has interior = 'rigid' and no springs")
       end subroutine check_alike
 
       !> Note storeys or bays whose lengths are those of no building.

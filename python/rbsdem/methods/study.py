@@ -417,7 +417,10 @@ def split_bodies(column: Column) -> Column:
 
 
 def variants(case: StudyCase, column: Structure, axial: Spring | None) -> Iterator[Variant]:
-    """Yield the models to compare with; each has one part changed."""
+    """Yield the models to compare with; each has one part changed.
+
+    `axial` is the spring of joints that open, tried where those of the column do not.
+    """
     moving = not case.static
     if isinstance(column, Frame):
         yield from _variants_of_frame(column, moving=moving)

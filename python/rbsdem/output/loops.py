@@ -625,10 +625,11 @@ def _lengths(result: ColumnResult) -> Array:
     return np.array([*beneath, *lengths, *above], dtype=np.float64)
 
 
-def _displacements(state: Line, joints: Array) -> tuple[Array, Array]:
-    """Return heights and displacements of the lower and upper end of each body [m].
+def _displacements(state: dict[str, Any], joints: Array) -> tuple[Array, Array]:
+    """Return heights and displacements of the ground and of both ends of each body [m].
 
-    To first order in the rotations, and scaled so that the top has its displacement.
+    `state` is a row of the result, `joints` the heights of the joints and of the top. To first
+    order in the rotations, and scaled so that the top has its displacement.
     """
     turned = np.cumsum(state["rotation"])
     lower = np.cumsum(state["slip"]) + np.concatenate(

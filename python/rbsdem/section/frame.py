@@ -336,8 +336,8 @@ class Frame:
         return {name: kinds[name] for name in self.parts.members}
 
     @cached_property
-    def struts(self) -> dict[str, Any]:
-        """Infills in their places, by the names of their struts."""
+    def struts(self) -> dict[str, InfilledBay]:
+        """Infilled bays, by the names of their struts."""
         return {name: bay for bay in self.infilled for name in bay.struts}
 
     @cached_property

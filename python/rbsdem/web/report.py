@@ -120,7 +120,7 @@ def write_report(
 
 
 def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the report of a state of the page as the text of one file."""
+    """Return the report of a state of the page: "text" and "name" of one file, or "faults"."""
     from rbsdem.web.frames import judged  # noqa: PLC0415
     from rbsdem.web.state import is_frame, state_of, title_of  # noqa: PLC0415
 
@@ -139,6 +139,7 @@ def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]
     title = title_of(cases[0]) or "Frame"
     with paper_units(*_OF_PAGE.get(str(asked.get("units")), ("mm", "kN"))):
         made: list[Sheet] = []
+        # What cannot be judged is reported by the sheets of its response alone.
         with suppress(RbsdemError):
             outcome = judged(answered.case, answered.result)
             for assessment in outcome.assessments[:1]:

@@ -182,7 +182,8 @@ contains
          call find_point(self, reached, .false., done)
          if (.not. done) return
          value = self%curve%least_rate(self%trial)
-         ! `least_rate` is `same_rate` where a rate vanishes, so that the point is just beyond the turn.
+         ! It is the least rate plus `same_rate`: between -0.9 and 0.9 of that the rate itself is just below
+         ! zero, and the point is just beyond the turn.
          if (abs(value) < 0.9_wp*same_rate) return
          call line%narrow(reached, value)
       end do
