@@ -95,7 +95,7 @@ contains
    !> The core with the hoops that confine it; of a wall that of one boundary element.
    pure type(hooped_core) function hooped_core_of(section, side) result(core)
       type(section_type), intent(in) :: section
-      !> 1: at y < 0, 2: at y > 0
+      !> At y < 0 (1) or at y > 0 (2)
       integer, intent(in) :: side
 
       core%hoops = section%transverse

@@ -68,8 +68,8 @@ contains
       type(run_type), intent(in) :: run(:)
       !> The runs to be taken, by their places in `run` and `result`
       type(lane_task), intent(in) :: task(:)
-      !> Kernel: 0: the fastest that the processor has; 1, 2 or 3: at the most that of the baseline, of AVX2,
-      !> of AVX-512
+      !> Level of the kernel, with 0 the fastest that the processor has, with 1, 2 or 3 at the most that of
+      !> the baseline, of AVX2, of AVX-512
       integer, intent(in) :: level
       type(run_result), intent(inout) :: result(:)
       !> Shared with other threads: 1: not zero to stop before the next run, 2: number of runs that are done,
@@ -162,7 +162,7 @@ contains
       !> Whether the columns have damping
       logical, intent(in) :: damped
       type(ensemble_motion), intent(in) :: motion(:)
-      !> Kernel: 0: the fastest; else the highest level that may be taken
+      !> Kernel, with 0 the fastest, else the highest level that may be taken
       integer, intent(in) :: level
       !> Numbers in a line of the cache
       integer, parameter :: line = 8

@@ -123,7 +123,7 @@ contains
       class(curve_type), intent(in) :: self
       !> At both ends of the curve; the rates are per unit of the parameter
       real(wp), intent(in) :: force(2), displacement(2), force_rate(2), displacement_rate(2)
-      !> Result: by the trapezoidal rule, and the correction; three forms of it
+      !> By the trapezoidal rule, and the correction; three forms of it
       real(wp) :: work(2), correction(3)
 
       associate (rise => force(2) - force(1), step => displacement(2) - displacement(1), &
