@@ -12,7 +12,7 @@ module rbs_app_command_line
    character(len=10), parameter :: options(8) = ['--output  ', '--quiet   ', '--json    ', '--count   ', &
               '--matrices', '--as      ', '--help    ', '--version ']
 
-   !> What the user asks for.
+   !> A command of the user, with its options.
    type :: command_type
       !> run, check, modes, keys, help or version
       character(len=:), allocatable :: name

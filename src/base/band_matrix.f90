@@ -164,7 +164,7 @@ contains
       integer :: j
 
       negative = 0
-      ! What the columns that are done take off the next three: r21 off their second row and first column.
+      ! Sums that finished columns take off the next three: r21 off their second row and first column.
       r11 = 0.0_wp
       r21 = 0.0_wp
       r31 = 0.0_wp
@@ -292,7 +292,7 @@ contains
       real(wp) :: r1, r2, r3, x, x1, x2, x3
       integer :: j
 
-      ! What the rows that are done take off the next three.
+      ! Sums that finished rows take off the next three.
       r1 = 0.0_wp
       r2 = 0.0_wp
       r3 = 0.0_wp

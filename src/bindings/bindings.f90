@@ -23,7 +23,7 @@ subroutine rbs_evaluate(what, statement, nn, number, names, m, input, made, cont
    integer(c_int), intent(out) :: answer(2), address(2), sizes(6)
    !f2py threadsafe
    type(request_type) :: request
-   ! What the pointer of the answer points to
+   ! The answer itself, to which the pointer leads
    type(answer_type), pointer :: found
 
    request%what = what
@@ -65,7 +65,7 @@ subroutine rbs_read(answer, length, count, text, values)
    character(len=length + 1), intent(out) :: text
    real(c_double), intent(out) :: values(count)
    !f2py threadsafe
-   ! What the pointer of the answer points to
+   ! The answer itself, to which the pointer leads
    type(answer_type), pointer :: found
 
    call c_f_pointer(transfer(answer, c_null_ptr), found)
@@ -82,7 +82,7 @@ subroutine rbs_release(answer)
    implicit none
    integer(c_int), intent(in) :: answer(2)
    !f2py threadsafe
-   ! What the pointer of the answer points to
+   ! The answer itself, to which the pointer leads
    type(answer_type), pointer :: found
 
    call c_f_pointer(transfer(answer, c_null_ptr), found)

@@ -226,7 +226,7 @@ contains
 
       call case%analysis%validate(messages)
       call case%output%check('output', messages)
-      if (case%analysis%known() .and. .not. case%analysis%dynamic()) call case%check_static(messages)
+      if (case%analysis%static()) call case%check_static(messages)
       call messages%raise(error)
    end subroutine check_settings
 
@@ -237,7 +237,7 @@ contains
       type(loads_type), intent(in) :: loads
       type(error_type), allocatable, intent(out) :: error
 
-      if (case%analysis%known() .and. .not. case%analysis%dynamic()) then
+      if (case%analysis%static()) then
          call fatal_error(error, bad_input, "analysis: method = '"//trim(case%analysis%method)// &
                           "' takes no time; call cyclic, or set method = 'auto'")
       else if (case%analysis%method == '' .and. loads%signal(lateral)%acts() .and. .not. &

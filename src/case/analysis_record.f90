@@ -38,7 +38,7 @@ module rbs_case_analysis_record
       !> Path of the state that the analysis begins in; not allocated: at rest
       character(len=:), allocatable :: initial
    contains
-      procedure :: visit => visit_analysis, dynamic, known, validate => validate_analysis
+      procedure :: visit => visit_analysis, dynamic, static, known, validate => validate_analysis
    end type analysis_record
 
    !> The output of a run.
@@ -113,6 +113,13 @@ contains
 
       known = any(methods%name == self%method)
    end function known
+
+   !> Whether the method leaves out inertia. A method that is not known is neither.
+   pure logical function static(self)
+      class(analysis_record), intent(in) :: self
+
+      static = any(methods%name == self%method .and. .not. methods%in_time)
+   end function static
 
    !> Add a message for every setting that is refused, or that the method does not use: the user expects it
    !> to have an effect.

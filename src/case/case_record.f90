@@ -228,7 +228,7 @@ contains
       call self%check_static(messages)
       call self%judgement%validate(messages)
       call self%output%check('output', messages)
-      if (self%output%motion .and. self%analysis%known() .and. .not. self%analysis%dynamic()) then
+      if (self%output%motion .and. self%analysis%static()) then
          call messages%add('output: motion = .true. has no meaning in a static path, where nothing '// &
                            'moves; '//"remove it, or set method = 'auto' in the group analysis")
       end if

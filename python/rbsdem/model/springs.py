@@ -118,8 +118,8 @@ class Spring:
             _core.UNSET if (value := own[name]) is None or type(value) is str else value
             for name in names
         ]
-        given = "".join([f"\t{name}={_core.word(own[name])}" for name in words])
-        return _core.Statement(f"{text}\trule={self.rule}{values}{given}", numbers)
+        chosen = "".join([f"\t{name}={_core.word(own[name])}" for name in words])
+        return _core.Statement(f"{text}\trule={self.rule}{values}{chosen}", numbers)
 
     def split(self, n: int) -> Self:
         """Return one of n equal springs that in series are equivalent to this one.
@@ -764,12 +764,12 @@ def placed(
         Groups: name and values, and the spring that stands there. Springs of layers follow at the
         end, each once, with their ids.
     """
-    found: list[Group | _core.Statement] = []
+    groups: list[Group | _core.Statement] = []
     ids: dict[Spring, int] = {}
     for name, place, *springs in entries:
-        found += [spring.statement(name, **place) for spring in springs] or [(name, place)]
-        found += [each.layers_group(ids, place) for each in springs if isinstance(each, Layered)]
-    return found + [spring.statement("layer_spring", id=i) for spring, i in ids.items()]
+        groups += [spring.statement(name, **place) for spring in springs] or [(name, place)]
+        groups += [each.layers_group(ids, place) for each in springs if isinstance(each, Layered)]
+    return groups + [spring.statement("layer_spring", id=i) for spring, i in ids.items()]
 
 
 #: Parts that a layer stands for: a bar, concrete inside the ties, concrete outside.

@@ -658,8 +658,8 @@ def path_force(column: Column, displacement: Array, *, rig: bool = False) -> Arr
         With the friction of the rig of a test.
     """
     force = np.zeros(displacement.size)
-    found, _ = reached_force(column, displacement)
+    reached, _ = reached_force(column, displacement)
+    force[: reached.size] = reached
     if rig:
-        found = found + rig_force(column, displacement[: found.size])
-    force[: found.size] = found
+        force[: reached.size] += rig_force(column, displacement[: reached.size])
     return force

@@ -137,8 +137,8 @@ class ColumnResult(Result):
         joint : int, optional
             The joint, from 1 at the ground to n.
         gauge : Gauge, optional
-            What the layers stand for and over which lengths they deform. Not needed for the hinge
-            of a column that was made from its drawing.
+            Part that each layer stands for, and the length over which it deforms. Not needed for
+            the hinge of a column that was made from its drawing.
 
         Raises
         ------

@@ -363,8 +363,8 @@ def building_in_plan(groups: Groups, drawings: Sequence[Groups] = ()) -> Buildin
 
 def _damping(groups: Groups) -> Damping | None:
     """Return the damping of the last group of this name, or None."""
-    given = groups.get("damping")
-    return Damping(**_core.typed("damping", given[-1])) if given else None
+    stated = groups.get("damping")
+    return Damping(**_core.typed("damping", stated[-1])) if stated else None
 
 
 def _put_hoops(frame: dict[str, Any], kinds: Mapping[str, Any]) -> None:

@@ -180,7 +180,7 @@ class HingeJoint:
 
     @cached_property
     def gauge(self) -> Gauge:
-        """What the layers stand for, and over which lengths they deform."""
+        """Part that each layer stands for, and the length over which it deforms."""
         parts = [part for part, (number, _) in self.parts.items() for _ in range(number)]
         return Gauge(tuple(parts), tuple(self.parts[part][1] for part in parts))
 

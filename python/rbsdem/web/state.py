@@ -164,7 +164,7 @@ class Faults:
             owner = begins[1]
         # Of "flexure spring of joint 0" the group
         owner = _OWNERS.get(owner, owner.partition(" ")[0])
-        # What it may be about: the group at its line, a row of bars at its face, those of its name.
+        # The fault is in the group at its line, a row of bars at its face, or groups of its name.
         block = _block(self.groups, drawing)
         if line is not None and self.lines:
             places = [max(bisect_right(self.lines, int(line)) - 1, 0)]
