@@ -127,6 +127,18 @@ def test_a_column_in_two_planes_has_one_axial_force(grid, pushed):
         np.testing.assert_allclose(two, one, rtol=1e-9)
 
 
+def test_a_wall_along_y_has_the_axial_force_of_its_post():
+    """The plane of its post is the first of the two; rows of both planes are of the same time."""
+    house = rbsdem.Building.grid(
+        [3.2], [5.0], [5.0], columns=C, beams_x=B, beams_y=B, walls={("y", 1, 1): W},
+        floor_load=6e3, mass="from_loads",
+    )  # fmt: skip
+    push = rbsdem.cyclic(house, displacement=[0.01, -0.01])
+    post, wall = (push.frame(name).member("C-1-1").axial for name in ("x-1", "y-1"))
+    np.testing.assert_array_equal(post, wall)
+    assert abs(wall[1] - wall[0]) > 1e3
+
+
 def test_joints_of_layers_of_both_planes_open_in_series():
     ends = [Layered([(-0.2, Elastic(k)), (0.2, Elastic(k))]) for k in (4e8, 7e8)]
     frames = []

@@ -65,11 +65,13 @@ contains
          row(at + m + i) = s(2)
          row(at + 2*m + i) = s(3)
          row(1) = row(1) + support_force(self, i, d, s)
-         ! In its second plane a column has the axial force of the first.
-         if (self%plan%is_given()) then
-            if (self%axial_of(i) > 0) row(at + i) = row(at + self%axial_of(i))
-         end if
       end do
+      ! In its second plane a column has the axial force of the first, whose member may come later.
+      if (self%plan%is_given()) then
+         do i = 1, m
+            if (self%axial_of(i) > 0) row(at + i) = row(at + self%axial_of(i))
+         end do
+      end if
       ! The base shear: supports of members and springs from the ground or, of a building, along the load
       row(1) = row(1) + ground_force(self, f)
       if (self%plan%is_given()) row(1) = self%base_force(d, f)
