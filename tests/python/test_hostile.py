@@ -134,7 +134,7 @@ ROUND = {"diameter": 0.4, "layout": rbsdem.Layout(8, 0.02, STEEL), "cover": 0.03
 OWN: dict[str, dict[str, Any]] = {
     "rbsdem.CircularSection": ROUND,
     "rbsdem.RectangularSection": {"layout": SECTION.layout, "ties": SECTION.ties, "cover": 0.03},
-    "rbsdem.compare_methods": {"displacement": PATH, "budget": 0.2},
+    "rbsdem.compare_methods": {"displacement": PATH[:2], "repeats": 1},
     "rbsdem.cyclic": {"displacement": PATH},
     "rbsdem.ensemble": MANY,
     "rbsdem.ida": {"levels": [0.1, 0.2]} | MANY,
