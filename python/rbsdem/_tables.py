@@ -31,8 +31,8 @@ FORCES = {
 }  # fmt: skip
 
 #: Parts of the names of a quantity, without accents: English, then German, Spanish, French,
-#: Italian, Turkish. A single letter is a name of its own only; the first that fits one column only
-#: names it.
+#: Italian, Turkish. A single letter is a name of its own only, and two are a word in a name; the
+#: first that fits one column only names it.
 WORDS = {
     "time": ("time", "t", "zeit", "tiempo", "temps", "tempo", "zaman", "x_value"),
     "acceleration": (
@@ -128,7 +128,7 @@ class NumberTable:
                 i
                 for i, name in enumerate(names)
                 if i not in self.texts
-                and (word in name if len(word) > 1 else bare(name) == word)
+                and (_is_in(word, name) if len(word) > 1 else bare(name) == word)
                 and not any(other in name for other in but)
             ]
             if len(named) == 1:
@@ -167,6 +167,11 @@ def plain(text: str) -> str:
     parts = unicodedata.normalize("NFKD", text.lower().replace("ı", "i"))
     text = "".join(letter for letter in parts if not unicodedata.combining(letter))
     return text.replace("\u2212", "-").replace("\u2044", "/")
+
+
+def _is_in(word: str, name: str) -> bool:
+    """Return whether a word is a part of a name: "ag" is none of "flag"."""
+    return word in name if len(word) > 2 else word in re.split("[^a-z]+", name)
 
 
 def bare(name: str) -> str:

@@ -294,6 +294,7 @@ def test_a_wrong_value_of_one_column_is_named(wrong):
         (rows(TWO, "time_s,acceleration_g\n").replace("0.3", "300"), {}, "is 300 g; no ground has"),
         (rows([f"{20 * i} {a}" for i, a in enumerate(ONE)], "t,acc_g\n"), {}, "on by 20 s on av"),
         (rows([f"{i} {a}" for i, a in enumerate(ONE)]), {"units": "g", "dt": 0.02}, "by 1 s on av"),
+        (rows(TWO, "time,vel\n"), {"units": "g"}, "no column is named after the acceleration"),
         (rows(TWO, "Scale factor 9.81\n", " "), {"units": "g"}, "may state a factor of the values"),
         (rows(TWO, "Uncorrected accelerogram\nGNS\n"), {"units": "g"}, "COSMOS, CSMIP or GeoNet"),
     ],
@@ -522,6 +523,14 @@ def test_a_written_motion_comes_back(tmp_path):
     path = tmp_path / f"{motion.name}.csv"
     motion.to_csv(path)
     assert motions.read_motion(path) == motion
+
+
+@pytest.mark.parametrize("name", ["flag", "damage", "x"])
+def test_ag_is_a_word_of_its_own(file, name):
+    """A column beside the accelerations is not taken for them as its name ends like theirs."""
+    text = f"time_s,a_m/s2,{name}\n" + "".join(f"{0.02 * i},{i},{-7 * i}\n" for i in range(9))
+    motion = rbsdem.motions.read_motion(file(text, "m.csv"))
+    assert motion.acceleration.tolist() == list(range(9))
 
 
 def test_a_folder_is_read_in_the_order_of_names(file, tmp_path):

@@ -783,6 +783,8 @@ def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, 
     else:
         if acceleration is None and len(numbers) == 2 and time is not None:
             acceleration = numbers[1 - numbers.index(time)]
+            if plain(table.names[acceleration]).startswith(("vel", "disp")):
+                acceleration = None
         if acceleration is None:
             raise InputError(
                 f"{path}: no column is named after the acceleration, or more than one "
