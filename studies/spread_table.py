@@ -1,6 +1,6 @@
 """The scatter of left-out tests about the model, what its bands hold: tables of docs/prediction.md.
 
-    python studies/spread_table.py FOLDER [--samples 16] [--jobs 2] [--once] [--write]
+    python studies/spread_table.py FOLDER [--samples 16] [--jobs 2] [--once] [--write] [--surface]
 
 The numbers of the model without each group of series are those of `studies/fit_model.py`.
 
@@ -31,6 +31,9 @@ alone. The numbers that are shipped are the same, and what is judged hardly diff
 
 `--write` puts scatter and coverage into docs/prediction.md and the numbers into
 data/layered_spread.json.
+
+`--surface` compares the samples, which nine runs of the model give, with as many runs as there are
+samples, and prints nothing else.
 """
 
 from __future__ import annotations
@@ -53,11 +56,14 @@ from rbsdem.curves.metrics import PathPoints, secant_stiffness
 from rbsdem.run.bands import (
     Features,
     Scatter,
+    _degraded,
+    _normal_points,
     half_band,
     near_shear,
     numbers,
     path_force,
     sample,
+    scatter_of_tests,
     slender,
 )
 from rbsdem.section.parameters import VERSION
@@ -158,9 +164,27 @@ def _band(task: tuple[int, int | np.ndarray | None, int, Scatter]) -> Band:
     d = case.target.displacement
     force = path_force(column, d, rig=True)
     peak = float(np.max(np.abs(force)))
-    up, down = half_band(force, sample(column, d, scatter, samples, rig=True), scatter)
+    up, down = half_band(force, sample(column, d, force, scatter, samples, rig=True), scatter)
     at = PathPoints(d, POINTS, "displacement")
     return Band((at(case.target.force) - at(force)) / peak, at(up) / peak, at(down) / peak)
+
+
+def _surface(task: tuple[int, int]) -> tuple[float, float]:
+    """Return width of a band over that of runs of all samples, and how far its ends are off."""
+    number, samples = task
+    case, scatter = fit_model._cases[number], scatter_of_tests()
+    column, d = case.column, case.target.displacement
+    strength, *sizes = (math.hypot(*getattr(scatter, name)) for name in NAMES.values())
+    runs = []
+    for stronger, *point in _normal_points(samples).tolist():
+        stiffness, faster = np.exp(np.multiply(sizes, point)).tolist()
+        run = path_force(_degraded(column, faster), stiffness * d, rig=True)
+        runs.append(math.exp(strength * stronger) * run)
+    force = path_force(column, d, rig=True)
+    known = np.array(half_band(force, np.array(runs), scatter))
+    ends = np.array(half_band(force, sample(column, d, force, scatter, samples, rig=True), scatter))
+    width = known.sum(axis=0).mean()
+    return ends.sum(axis=0).mean() / width, np.abs(ends - known).mean() / width
 
 
 # ---- tables --------------------------------------------------------------------------------------
@@ -366,6 +390,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--once", action="store_true", help="samples of each test once")
     parser.add_argument("--write", action="store_true", help="into docs and data")
+    parser.add_argument("--surface", action="store_true", help="samples beside runs of all")
     given = parser.parse_args()
 
     began = time.perf_counter()
@@ -383,6 +408,12 @@ def main() -> None:
         def run(function: Any, tasks: list[Any]) -> Iterator[Any]:
             return pool.map(function, tasks, chunksize=4)
 
+        if given.surface:
+            tasks = [(i, given.samples) for i in range(len(cases))]
+            ratio, off = np.array(list(run(_surface, tasks))).T
+            print(f"width: mean {ratio.mean():.4f}, standard deviation {ratio.std():.4f}")
+            print(f"ends off: mean {off.mean():.4f}, nine tenths below {np.quantile(off, 0.9):.4f}")
+            return
         rows = list(run(_numbers, [(i, None) for i in range(len(cases))]))
         once: dict[str, Any] | None = {} if given.once else None
         for judged in range(len(_without)):

@@ -539,7 +539,7 @@ def spread(one: Outcome, scatter: bands.Scatter) -> Spread:
     at = test.drift * test.span
     path = np.unique(np.concatenate((np.linspace(0.0, at[-1], 60), at)))
     force = bands.path_force(made, path)
-    sampled = bands.sample(made, path, scatter, 16)
+    sampled = bands.sample(made, path, force, scatter, 16)
     up, down = bands.half_band(force, sampled, scatter)
     rows = np.searchsorted(path, at)
     off = test.force - force[rows]

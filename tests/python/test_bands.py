@@ -15,6 +15,7 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.run.bands import (
     Interval,
     Scatter,
+    _degraded,
     _normal_points,
     near_shear,
     path_force,
@@ -44,7 +45,7 @@ def test_without_scatter_the_band_is_that_of_the_shape() -> None:
     peak = np.max(np.abs(found.force))
     np.testing.assert_allclose(found.upper - found.force, 2 * 0.05 * peak, rtol=1e-9)
     np.testing.assert_allclose(found.force - found.lower, 2 * 0.05 * peak, rtol=1e-9)
-    np.testing.assert_array_equal(found.samples, np.tile(found.force, (16, 1)))
+    np.testing.assert_allclose(found.samples, np.tile(found.force, (16, 1)), rtol=1e-12)
     assert found.width == pytest.approx(0.2)
 
 
@@ -58,11 +59,19 @@ def test_scatter_of_strength_is_a_factor() -> None:
     assert found.upper[at] - top == pytest.approx(2 * rise)
 
 
-def test_a_softer_column_is_where_the_other_is_at_a_smaller_displacement() -> None:
-    found = rbsdem.peer.band(column(), PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
-    path = PATH[:2, None] * np.exp(0.3 * _normal_points(16)[:, 1])
-    again = [path_force(column(), row) for row in path.T]
-    np.testing.assert_allclose(found.samples, again, rtol=1e-12)
+def test_samples_are_as_if_each_went_through_the_model() -> None:
+    """A softer column is where the other is at a smaller displacement; nine paths say it of all."""
+    scatter = replace(NONE, stiffness=(0.0, 0.3), degradation=(0.3, 0.0))
+    for model in (column(), column(shear_strength=0.6 * parameters().shear_strength)):
+        found = rbsdem.peer.band(model, PATH, scatter=scatter)
+        paths = [
+            path_force(_degraded(model, math.exp(0.3 * worse)), PATH * math.exp(0.3 * stiffer))
+            for _, stiffer, worse in _normal_points(16).tolist()
+        ]
+        ends, known = (np.quantile(rows, (0.1, 0.9), axis=0) for rows in (found.samples, paths))
+        width = np.mean(known[1] - known[0])
+        assert np.mean(ends[1] - ends[0]) == pytest.approx(width, rel=0.03)
+        assert np.mean(np.abs(ends - known)) < 0.04 * width
 
 
 def test_degradation_changes_late_cycles_only() -> None:

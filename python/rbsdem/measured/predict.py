@@ -202,7 +202,7 @@ def predict(
         A model of `rbsdem.peer.column`, or a function that makes a `Column` from a `Specimen`.
     bands : bool, optional
         With the 80 % band of each prediction and the intervals of its numbers; for the layered
-        model. A band takes the time of `samples` predictions more.
+        model. A band takes the time of nine predictions more.
     samples : int, optional
         Samples of a band, as for `rbsdem.peer.band`.
     displacement : array_like, shape (m,), optional
