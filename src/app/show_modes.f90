@@ -60,8 +60,11 @@ contains
          call say(trim(line), error)
       end do
       if (modes%warning /= '') call say('# note: '//trim(modes%warning), error)
-      write (line, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
-      call say(trim(line), error)
+      ! Frames have none, as explicit methods are not for them.
+      if (modes%stable_step > 0.0_wp) then
+         write (line, '(a, es23.16e2)') '# stable step of rk4 [s]:', modes%stable_step
+         call say(trim(line), error)
+      end if
       if (.not. with_matrices) return
       call print_matrix('mass', matrices%unknown, matrices%mass, error)
       call print_matrix('stiffness', matrices%unknown, matrices%stiffness, error)

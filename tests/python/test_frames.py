@@ -81,6 +81,20 @@ def test_limit_loads_of_a_portal_are_the_least_of_three_mechanisms(v):
     assert peak == pytest.approx(min(mechanisms), rel=1e-12)
 
 
+def test_a_post_between_pins_leans_on_its_support():
+    """A cantilever k = 3 E I/h^3 holds a post with the load P: H = (k - P/h) u, all of it below."""
+    h, p, u = 3.0, 2e5, 0.01
+    nodes = [FrameNode("a", 0.0, 0.0, "fixed"), FrameNode("b", 0.0, h, push_x=1.0)]
+    nodes += [FrameNode("c", 4.0, 0.0, "pinned"), FrameNode("d", 4.0, h, load_y=-p)]
+    post, tie = (FrameMember(E, area, INERTIA, ends="pinned") for area in (A, 100 * A))
+    members = [Member("C", "a", "b", ELASTIC), Member("P", "c", "d", post)]
+    members += [Member("B", "b", "d", tie)]
+    more = {"pattern": "nodes", "control_node": "b", "kinematics": "pdelta"}
+    run = rbsdem.cyclic(Frame(nodes=nodes, members=members, **more), displacement=[u])
+    assert run.force[-1] == pytest.approx((3 * E * INERTIA / h**3 - p / h) * u, rel=1e-7)
+    assert run.base_shear[-1] == pytest.approx(run.force[-1], rel=1e-12)
+
+
 @pytest.mark.parametrize("kinematics", ["small", "pdelta"])
 @pytest.mark.parametrize("seed", range(8))
 def test_reactions_are_the_loads(seed, kinematics):

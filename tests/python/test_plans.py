@@ -268,6 +268,8 @@ def test_targets_are_amplified_by_torsion_of_the_modes():
     }
     assert found.torsion == pytest.approx(by_hand, rel=1e-9)
     assert max(by_hand.values()) > 1.1
+    # The elastic period is that of its mode.
+    assert found.curve.period == pytest.approx(2 * np.pi / omega[np.abs(1e5 * shapes[0]).argmax()])
     # The mode that moves the most mass, on the line of the push-over
     assert found.curve.gamma * found.curve.modal_mass == pytest.approx(max((1e5 * shapes[0]) ** 2))
     assert found.storey_drift == pytest.approx(
@@ -599,6 +601,26 @@ def test_a_drawn_building_and_its_case_file_are_one(tmp_path):
         np.testing.assert_array_equal(again.channels[name], values, err_msg=name)
     push.save(tmp_path / "push.npz")
     assert rbsdem.read_result(tmp_path / "push.npz").building.plan == house.plan
+
+
+def test_the_ground_carries_all_loads_beside_walls_along_x_and_y():
+    """A post across a wall leans between its pins, and has the axial force of the wall."""
+    house = rbsdem.Building.grid(
+        [3.2], [5.6, 4.0], [5.0], columns=C, beams_x=B, beams_y=B,
+        walls={("x", 1, 2): W, ("y", 3, 1): W}, floor_load=6e3, mass="from_loads",
+        kinematics="pdelta", direction=20.0,
+    )  # fmt: skip
+    push = rbsdem.cyclic(house, displacement=[0.0, 0.01], method="newton")
+    np.testing.assert_allclose(push.base_shear, push.force, rtol=1e-12, atol=1e-6)
+    line = plot.history(push, "base_shear").get_lines()[0]
+    np.testing.assert_allclose(line.get_ydata(), 1e-3 * push.force, rtol=1e-12, atol=1e-9)
+    for names, shear in (
+        (["x-1", "x-2"], push.base_shear_x),
+        (["y-1", "y-2", "y-3"], push.base_shear_y),
+    ):
+        feet = sum(sum(push.frame(name).reactions.values()) for name in names)
+        np.testing.assert_allclose(feet[:, 0], -shear, rtol=1e-9, atol=1e-3)
+        np.testing.assert_allclose(feet[:, 1], 6e3 * 48.0, rtol=1e-9)
 
 
 def test_a_plan_without_a_corner_is_its_frames_one_by_one():

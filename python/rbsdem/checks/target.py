@@ -333,8 +333,10 @@ def _capacity_of_building(push: BuildingResult) -> Capacity:
     slope = _pdelta_slope(building, modal.x[:, first] / phi, gamma)
     total = float(np.sum(building.plan_mass) + sum(one.mass for one in building.nodes if one.floor))
     storeys = len(building.storey_heights)
-    more = {"pdelta_slope": slope, "first_yield": _first_yield(push, side)}
-    return Capacity(u, v, gamma, modal_mass, total, storeys, **more)
+    # The period is that of the mode, with its slope: under dead load members may have cracked.
+    stiffness = modal_mass * float(modal.omega[first]) ** 2
+    curve = gamma, modal_mass, total, storeys, float(modal.period[first]), stiffness, slope
+    return Capacity(u, v, *curve, _first_yield(push, side))
 
 
 def _elastic_slope(frame: Frame, shape: Array) -> float:

@@ -131,11 +131,13 @@ class Section(_Fields, ABC):
                 f"{type(self.ties).__name__.lower()} {1e3 * self.ties.diameter:.3g} mm at "
                 f"{1e3 * self.ties.spacing:.3g} mm, {self.ties.steel.fy / 1e6:.4g} MPa"
             )
+        lap: Lap | None = getattr(self, "lap", None)
         return (
             f"{self.shape.replace('_', ' ')} {size} mm, f'c {self.concrete.fc / 1e6:.4g} MPa, "
             f"{len(single)} bars of {sizes} mm ({100 * self.steel_ratio:.2f} %, "
             f"{' and '.join(f'{fy:.4g}' for fy in steels)} MPa), {hoops}, "
             f"cover {1e3 * self.cover:.3g} mm"
+            + (f", lap {1e3 * lap.length:.3g} mm" if lap is not None else "")
         )
 
     @property

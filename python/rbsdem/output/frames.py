@@ -44,7 +44,7 @@ _LOOKS = {
     "bar_buckling": ("bars buckle", "#2e86c1", "has bars that buckle", "d", "#2e86c1"),
     "bar_fracture": ("bar broken", "#1b2631", "has a broken bar", "X", "#1b2631"),
     "cap": ("beyond its cap", "#c0392b", "reaches its cap", "D", "#c0392b"),
-    "residual": ("", "", "is at what is left of it", "v", "#a04a26"),
+    "residual": ("", "", "is at its residual strength", "v", "#a04a26"),
     FAILS: ("failed in shear", "#8e44ad", "fails in shear", "s", "#8e44ad"),
     "lost": ("", "", "is lost", "X", "#c0392b"),
 }
@@ -82,7 +82,7 @@ _PANELS = {
     "": ("infill", "#f3e3da"),
     "cracking": ("infill cracked", "#e3b9a3"),
     "cap": ("infill beyond its peak", "#cf7f5a"),
-    "residual": ("infill at what is left", "#a04a26"),
+    "residual": ("infill at its residual", "#a04a26"),
 }
 _PANEL: dict[str, Any] = {"edgecolor": "#b08a76", "linewidth": 0.5, "zorder": 0.5}
 
@@ -379,11 +379,14 @@ def member_forces(
             face = "white" if force == "axial" and value[0] < 0 else "0.85"
             drawn.fill(*outline.T, facecolor=face, edgecolor="none", zorder=1.5)
             drawn.plot(*outline.T, color="black", linewidth=0.5, zorder=2)
-        for i, at in _numbered(members, values, force):
-            _write_force(drawn, members[i], values[i], at, (reach, factor(unit)))
+        written = [
+            (members[i], at, _write_force(drawn, members[i], values[i], at, (reach, factor(unit))))
+            for i, at in _numbered(members, values, force)
+        ]
         _undeformed(drawn, structure, True)
         drawn.set_title(_heading(result, row, labelled(name, unit)))
         _dress(drawn, structure)
+        _part(written)
     return drawn
 
 
@@ -589,7 +592,7 @@ def _draw_hinges(
             loc="upper center",
             bbox_to_anchor=(0.5, -0.16 / max(high / 3, 0.6)),
             ncols=round(wide / 1.7),
-            handletextpad=0.0,
+            handletextpad=0.3,
             columnspacing=1.2,
         )
 
@@ -720,7 +723,7 @@ def _forces(result: FrameResult, i: int, member: MemberGeometry, force: str, row
 
 def _write_force(
     ax: Axes, member: MemberGeometry, values: Array, at: int, scales: tuple[float, float]
-) -> None:
+) -> Any:
     """Write a force of a member beside it; scales are those of the line and of the number."""
     reach, on_paper = scales
     share, value = at / (values.size - 1), float(values[at])
@@ -729,7 +732,7 @@ def _write_force(
     # Above and below a beam towards its middle, away from the column.
     side = "left" if (outward[0] > 0.5 if member.upright else share < 0.5) else "right"
     inside = 0.3 < share < 0.7 and not member.upright
-    ax.annotate(
+    return ax.annotate(
         f"{_short(abs(on_paper * value))}{', tension' if axial and value < 0 else ''}",
         tuple(tip),
         xytext=3.0 * outward + (6.0 * (1 - 2 * share) * member.axis if member.upright else 0.0),
@@ -740,6 +743,20 @@ def _write_force(
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.2, "alpha": 0.7},
         zorder=6,
     )
+
+
+def _part(written: list[tuple[MemberGeometry, int, Any]]) -> None:
+    """Move numbers of columns towards their middle, off those that are written already."""
+    if not written:
+        return
+    written[0][2].figure.draw_without_rendering()
+    taken: list[Any] = []
+    for member, at, text in sorted(written, key=lambda each: each[0].upright):
+        for _ in range(8 if member.upright else 0):
+            if not any(text.get_window_extent().overlaps(other) for other in taken):
+                break
+            text.xyann = text.xyann + (-3.0 if at else 3.0) * member.axis
+        taken.append(text.get_window_extent())
 
 
 def _short(value: float) -> str:

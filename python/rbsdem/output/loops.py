@@ -35,7 +35,7 @@ from rbsdem.output.style import (
 from rbsdem.output.units import factor, labelled
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.limit_states import LimitStates
-from rbsdem.run.rows import ENERGIES
+from rbsdem.run.rows import ENERGIES, Result
 
 FIGURE_SIZE = (6.9, 6.0)
 
@@ -483,16 +483,16 @@ _ENERGY_LABELS = {
 
 
 def history(
-    result: ColumnResult, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
+    result: Result, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
 ) -> Axes:
     """Draw a response over time, or over the points of a static path.
 
     Parameters
     ----------
     result : Result
-        The response.
+        The response, of a building along its direction.
     over : {"displacement", "drift", "force", "base_shear", "base_moment"}, optional
-        The quantity, in mm, %, kN and kN m.
+        The quantity, in mm, %, kN and kN m; a building has no base moment.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line
@@ -508,8 +508,8 @@ def history(
     InputError
         If `over` is none of these.
     """
-    _arguments.instance(result, "history: result", ColumnResult)
-    over = _arguments.choice(over, "over", _OVER)
+    _arguments.instance(result, "history: result", Result)
+    over = _arguments.choice(over, "over", [name for name in _OVER if hasattr(result, name)])
     words, unit = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
         drawn.plot(result.time, factor(unit) * getattr(result, over), **line_of(MODEL_LINE, line))
@@ -519,14 +519,14 @@ def history(
     return drawn
 
 
-def _along(result: ColumnResult, ax: Axes, label: str) -> None:
+def _along(result: Result, ax: Axes, label: str) -> None:
     """Dress axes whose x is the time, or the points of a path."""
     ax.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
     ax.set(xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel=label)
     ax.tick_params(right=True, top=True)
 
 
-def energy(result: ColumnResult, *, ax: Axes | None = None) -> Axes:
+def energy(result: Result, *, ax: Axes | None = None) -> Axes:
     """Draw the energies of a response over time; those that stay zero are left out.
 
     Parameters

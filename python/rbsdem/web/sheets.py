@@ -486,7 +486,11 @@ def _drawings(frame: Frame) -> dict[Section, str]:
     """Return the different sections of the members of a frame, and the names of these."""
     names_of: dict[Section, list[str]] = {}
     for name, kind in frame.kinds.items():
-        for drawing in dict.fromkeys(kind.sections or ()):
+        drawings = dict.fromkeys(kind.sections or ())
+        # The half of a column without the lap at its foot is the same drawing.
+        for drawing in [each for each in drawings if getattr(each, "lap", None) is not None]:
+            drawings.pop(replace(drawing, lap=None), None)  # type: ignore[call-arg]
+        for drawing in drawings:
             names_of.setdefault(drawing, []).append(name)
     return {
         drawing: names[0] + (f" and {len(names) - 1} more" if len(names) > 1 else "")

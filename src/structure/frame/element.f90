@@ -64,6 +64,8 @@ module rbs_structure_frame_element
       !> and the first unknown where a support holds a displacement
       real(wp) :: from_unknowns(3, most_columns) = 0.0_wp, lean(3, most_columns) = 0.0_wp
       integer :: unknown(most_columns) = 1
+      !> Rotation of the chord by a displacement along x of either end, held or not [1/m]
+      real(wp) :: lean_of_end(2) = 0.0_wp
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
       integer :: before = 0, bending = 0, opening = 0
       type(element_joint), allocatable :: joint(:)

@@ -208,8 +208,8 @@ contains
             ! Column 3 j - 2 is that of x at end j.
             force = force - sum(s*e%to_basic(:, 3*j - 2))
             if (.not. self%axially_loaded) cycle
-            ! A chord that leans presses the support aside; a rotation against it has the opposite sign.
-            force = force - e%compression*e%length*chord_rotation(e, x)*e%to_basic(2, 3*j - 2)
+            ! A chord that leans presses the support aside, between pins too.
+            force = force + e%compression*e%length*chord_rotation(e, x)*e%lean_of_end(j)
          end do
       end associate
    end function support_force

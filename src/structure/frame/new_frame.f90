@@ -586,6 +586,7 @@ contains
                e%lean(1, 3) = 1.0_wp
                e%lean(2, 6) = 1.0_wp
                e%lean(3, :6) = chord
+               e%lean_of_end = chord([1, 4])
                call e%follow_floor(end_of, factor)
                call share_elongation(frame, i, e)
                call e%leave_out_supports()
