@@ -405,14 +405,16 @@ def cyclic(
     axial_load: Array | None,
     before: Array | None,
     corners: bool = False,
+    with_end: bool = True,
 ) -> Run:
     """Follow a static path through displacements or forces.
 
     Without `axial_load` it is constant, without `before` the column is virgin. With `corners` there
-    are rows between the targets too, where a spring leaves its line.
+    are rows between the targets too, where a spring leaves its line. Without `with_end` there is no
+    state at the end.
     """
     inputs: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
-    inputs |= {"before": before, "corners": corners}
+    inputs |= {"before": before, "corners": corners, "without_end": not with_end}
     with _interruptible() as control:
         answer = _ask("cyclic", settings, control, structure, **inputs)
     return _finish(answer, answer.values)

@@ -92,7 +92,7 @@ contains
          run%task%recorder => run%recorder
          run%task%every = run%case%output%every
          run%task%collapse_drift = run%case%analysis%collapse_drift
-         run%task%keeps_end = .true.
+         run%task%keeps_end = .not. request%wants('without_end')
          run%task%most_seconds = run%case%analysis%max_seconds
          run%task%control => control(1)
          run%progress%word => control(2)

@@ -339,11 +339,11 @@ def test_interrupt_keeps_the_best(monkeypatch):
     test = response(replace(start, flexure=flexure), path(start))
     calls, whole = [], run_result.follow
 
-    def interrupted(column, call):
+    def interrupted(column, call, **how):
         calls.append(column)
         if len(calls) == 60:
             raise KeyboardInterrupt
-        return whole(column, call)
+        return whole(column, call, **how)
 
     monkeypatch.setattr(run_result, "follow", interrupted)
     fit = quiet(start, test, ["flexure.k_y", "flexure.d_y"])
@@ -354,8 +354,8 @@ def test_interrupt_keeps_the_best(monkeypatch):
 def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
     whole = run_result.follow
 
-    def broken(column, call):
-        channels, *rest, error, note = whole(column, call)
+    def broken(column, call, **how):
+        channels, *rest, error, note = whole(column, call, **how)
         if column.shear.k > 4e7:
             # The last row is a state on the way to the next one.
             channels["force"] = channels["force"][: call["displacement"].size // 2 + 1]

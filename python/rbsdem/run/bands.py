@@ -355,6 +355,7 @@ def band(
     scatter: Scatter | None = None,
     learned: Learned | None = None,
     rig: bool = False,
+    force: Array | None = None,
 ) -> Band:
     """Predict the force along a path, with the band that holds 80 % of left-out tests.
 
@@ -374,6 +375,8 @@ def band(
     rig : bool, optional
         With the friction of the rig of a test (`rbsdem.run.rig.rig_force`), as in
         `rbsdem.peer.predict`, and whatever is `learned`; by default the force is the column's.
+    force : ndarray, shape (m,), optional
+        The force along the path as `path_force` finds it, where it is known, and nothing `learned`.
 
     Returns
     -------
@@ -415,7 +418,7 @@ def band(
         warn(f"band: {'; '.join(warnings)}")
     base = column if learned is None else learned.column
     rig = _arguments.boolean(rig, "rig") or learned is not None
-    force, left = path_force(base, d, rig=rig), 1.0
+    force, left = path_force(base, d, rig=rig) if force is None else force, 1.0
     sampled = sample(base, d, force, scatter, number, rig=rig)
     if learned is not None:
         sampled -= force

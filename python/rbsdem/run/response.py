@@ -168,7 +168,7 @@ def reached_force(column: Structure, displacement: ArrayLike) -> tuple[Array, So
     returned with the forces. No notes are told.
     """
     path = _arguments.vector(displacement, "displacement")
-    channels, _, _, error, _ = follow(column, {"displacement": path})
+    channels, _, _, error, _ = follow(column, {"displacement": path}, with_end=False)
     force = channels["force"][: path.size if error is None else -1]
     bad = np.flatnonzero(~np.isfinite(force))
     return (force[: bad[0]] if bad.size else force), error

@@ -11,6 +11,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike
 from rbsdem.model.column import Column
+from rbsdem.model.springs import Bilinear, unchecked
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import parameters
 
@@ -28,11 +29,8 @@ def friction(displacement: Array, height: float) -> Array:
     height : float
         Of the top [m].
     """
-    share, found = 0.0, []
-    for step in (np.diff(displacement, prepend=0.0) / (_TURN * height)).tolist():
-        share = min(max(share + step, -1.0), 1.0)
-        found.append(share)
-    return np.array(found)
+    spring = unchecked(Bilinear, k=1.0, d_y=1.0, k_post=0.0)
+    return spring.response(displacement / (_TURN * height))
 
 
 def rig_force(column: Column, displacement: ArrayLike) -> Array:

@@ -50,6 +50,7 @@ def follow(
     every: int | None = None,
     openings: bool = False,
     corners: bool = False,
+    with_end: bool = True,
 ) -> _core.Run:
     """Follow a static path, by the keywords of `rbsdem.cyclic` with checked arrays."""
     settings = settings_of(
@@ -66,7 +67,8 @@ def follow(
     by_force = call.get("force") is not None
     values = call["force" if by_force else "displacement"]
     load = call.get("axial_load")
-    return _core.cyclic(structure._made, settings, by_force, values, load, state, corners)
+    how = load, state, corners, with_end
+    return _core.cyclic(structure._made, settings, by_force, values, *how)
 
 
 def march(
