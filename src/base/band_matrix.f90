@@ -118,14 +118,24 @@ contains
 
    !> Scale the matrix, if it has a scale, and factor it: sets the factor, `negative`, `positive`, and whether
    !> the factor serves for solutions.
-   subroutine factor(self)
+   subroutine factor(self, columns)
       class(band_matrix), intent(inout) :: self
+      !> The columns that have been filled since the last call (size); without it, all: the others are scaled
+      logical, intent(in), optional, contiguous :: columns(:)
+      integer :: first
 
-      if (allocated(self%scale)) call scale_band(self%size, size(self%band, 1), self%scale, self%band)
+      first = 1
+      if (present(columns)) then
+         do first = 1, self%size - 1
+            if (columns(first)) exit
+         end do
+      end if
+      if (allocated(self%scale)) call scale_band(self%size, size(self%band, 1), self%scale, self%band, &
+                                                 columns)
       if (self%width <= narrow) then
          call factor_narrow(self%size, self%band, self%triangle, self%negative)
       else
-         call factor_wide(self%size, self%width, self%band, self%factored, self%first, self%triangle, &
+         call factor_wide(self%size, self%width, self%band, first, self%factored, self%first, self%triangle, &
                           self%inverse, self%negative)
       end if
       self%has_pivots = .false.
@@ -141,13 +151,18 @@ contains
    end subroutine factor
 
    !> Multiply each element a(i, j) of a lower band by scale(i) scale(j).
-   pure subroutine scale_band(n, rows, scale, band)
+   pure subroutine scale_band(n, rows, scale, band, columns)
       integer, intent(in) :: n, rows
       real(wp), intent(in) :: scale(n + rows - 1)
       real(wp), intent(inout) :: band(rows, n)
+      !> The columns that are scaled; without it, all
+      logical, intent(in), optional :: columns(n)
       integer :: j
 
       do j = 1, n
+         if (present(columns)) then
+            if (.not. columns(j)) cycle
+         end if
          band(:, j) = band(:, j)*(scale(j)*scale(j:j + rows - 1))
       end do
    end subroutine scale_band
@@ -196,10 +211,11 @@ contains
 
    !> Factor L D L' for any half-width, row by row and within the profile: a row of L begins where that of the
    !> matrix does. Rows before the first one that has changed stay.
-   pure subroutine factor_wide(n, width, band, factored, first, triangle, inverse, negative)
+   pure subroutine factor_wide(n, width, band, filled, factored, first, triangle, inverse, negative)
       integer, intent(in) :: n, width
-      !> Lower band: band(1 + i - j, j) = a(i, j)
+      !> Lower band: band(1 + i - j, j) = a(i, j), and the first column that has been filled
       real(wp), intent(in) :: band(width + 1, n)
+      integer, intent(in) :: filled
       !> Band that was factored before, replaced by this one; the first column of each row; the factor: 1/D
       !> and L, row by row, and 1/D alone. All follow from this band: a path that is resumed has the same bits
       real(wp), intent(inout) :: factored(width + 1, n), triangle(width + 1, n), inverse(n)
@@ -210,7 +226,7 @@ contains
       real(wp) :: row(n), pivot
       integer :: changed, i, j, k
 
-      do changed = 1, n
+      do changed = filled, n
          if (.not. all(abs(band(:, changed) - factored(:, changed)) <= 0.0_wp)) exit
       end do
       factored(:, changed:) = band(:, changed:)
@@ -455,7 +471,9 @@ contains
          y = (g - dot_product(self%flexible(:, 2), f))/self%from_left
          x = f + self%border(:, 1)*y
       end if
-      call solve_scaled(self, 1, x, regular)
+      ! A displacement alone has no force to solve for.
+      regular = .true.
+      if (any(abs(x) > 0.0_wp)) call solve_scaled(self, 1, x, regular)
       if (.not. regular) return
       more = (g - dot_product(self%border(:, 2), x))/self%from_right
       x = x + self%flexible(:, 1)*more

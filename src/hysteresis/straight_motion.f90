@@ -11,6 +11,10 @@ module rbs_hysteresis_straight_motion
    !> Ways beyond this, in units of the rates, have no end.
    real(wp), parameter :: farthest = 1.0e100_wp
 
+   !> Springs that are looked at together whether any needs a closer look: which way each moves is as good as
+   !> random, and a branch for each would cost more than all of the rest.
+   integer, parameter :: block_length = 32
+
 contains
 
    !> Springs that cannot move on along their lines: they are on the end, or unload on this reversal.
@@ -20,28 +24,50 @@ contains
       real(wp), intent(in), contiguous :: rate(:)
       !> The blocked springs (the first `count` elements), and how many they are
       integer, intent(out) :: blocked(size(rate)), count
-      integer :: i
+      integer :: first, last, i
 
       count = 0
       associate (d => springs%d, lower => springs%lower, upper => springs%upper, &
                  one_way => springs%unload_on_reversal)
-         do i = 1, size(rate)
-            ! `upper` is the highest deformation of the line: where the end does not belong to it, the number
-            ! below the end, and only a spring beyond that number is blocked.
-            if (rate(i) > 0.0_wp) then
-               if (d(i) < upper(i) .and. one_way(i) >= 0) cycle
-               if (.not. (d(i) > upper(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle
-            else if (rate(i) < 0.0_wp) then
-               if (d(i) > lower(i) .and. one_way(i) <= 0) cycle
-               if (.not. (d(i) < lower(i) .or. one_way(i) > 0 .or. springs%includes_lower_end(i))) cycle
-            else
-               cycle
-            end if
-            count = count + 1
-            blocked(count) = i
+         do first = 1, size(rate), block_length
+            last = min(first + block_length - 1, size(rate))
+            if (all_have_room(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
+                              upper(first:last), one_way(first:last))) cycle
+            do i = first, last
+               ! `upper` is the highest deformation of the line: where the end does not belong to it, the
+               ! number below the end, and only a spring beyond that number is blocked.
+               if (rate(i) > 0.0_wp) then
+                  if (d(i) < upper(i) .and. one_way(i) >= 0) cycle
+                  if (.not. (d(i) > upper(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle
+               else if (rate(i) < 0.0_wp) then
+                  if (d(i) > lower(i) .and. one_way(i) <= 0) cycle
+                  if (.not. (d(i) < lower(i) .or. one_way(i) > 0 .or. springs%includes_lower_end(i))) cycle
+               else
+                  cycle
+               end if
+               count = count + 1
+               blocked(count) = i
+            end do
          end do
       end associate
    end subroutine find_blocked
+
+   !> Whether n springs all are before the ends of their lines that they move to, and unload on no reversal.
+   pure logical function all_have_room(n, d, rate, lower, upper, one_way)
+      integer, intent(in) :: n, one_way(n)
+      real(wp), intent(in) :: d(n), rate(n), lower(n), upper(n)
+      real(wp) :: stopped, up, room
+      integer :: i
+
+      stopped = 0.0_wp
+      !$omp simd reduction(max:stopped) private(up, room)
+      do i = 1, n
+         up = 0.5_wp + sign(0.5_wp, rate(i))
+         room = up*(upper(i) - d(i)) + (1.0_wp - up)*(d(i) - lower(i))
+         stopped = max(stopped, merge(0.0_wp, 1.0_wp, room > 0.0_wp), (1.0_wp - 2.0_wp*up)*one_way(i))
+      end do
+      all_have_room = .not. stopped > 0.0_wp
+   end function all_have_room
 
    !> The first end of a line that springs reach from the deformations q, moving by q + stride*rate.
    pure subroutine nearest_end(springs, q, rate, stride, ends)
@@ -53,31 +79,56 @@ contains
       !> The spring that reaches it, 0 for none
       integer, intent(out) :: ends
       real(wp) :: clearance, most
-      integer :: i
+      integer :: first, last, i
 
       stride = huge(1.0_wp)
       most = farthest
       ends = 0
       associate (lower => springs%lower, upper => springs%upper)
-         do i = 1, size(q)
-            ! Most springs are passed over by the highest deformation of the line. The end itself may be the
-            ! next number: a long stride, where the rate is next to nothing.
-            if (rate(i) > 0.0_wp) then
-               if (upper(i) - q(i) > most*rate(i)) cycle
-               clearance = distance(springs%end_toward(i, 1) - q(i), rate(i))
-            else if (rate(i) < 0.0_wp) then
-               if (q(i) - lower(i) > -most*rate(i)) cycle
-               clearance = distance(q(i) - springs%end_toward(i, -1), -rate(i))
-            else
-               cycle
-            end if
-            if (.not. clearance < stride) cycle
-            stride = clearance
-            most = min(stride, farthest)
-            ends = i
+         do first = 1, size(q), block_length
+            last = min(first + block_length - 1, size(q))
+            if (all_are_far(last - first + 1, q(first:last), rate(first:last), lower(first:last), &
+                            upper(first:last), 0.0_wp, most)) cycle
+            do i = first, last
+               ! Most springs are passed over by the highest deformation of the line. The end itself may be
+               ! the next number: a long stride, where the rate is next to nothing.
+               if (rate(i) > 0.0_wp) then
+                  if (upper(i) - q(i) > most*rate(i)) cycle
+                  clearance = distance(springs%end_toward(i, 1) - q(i), rate(i))
+               else if (rate(i) < 0.0_wp) then
+                  if (q(i) - lower(i) > -most*rate(i)) cycle
+                  clearance = distance(q(i) - springs%end_toward(i, -1), -rate(i))
+               else
+                  cycle
+               end if
+               if (.not. clearance < stride) cycle
+               stride = clearance
+               most = min(stride, farthest)
+               ends = i
+            end do
          end do
       end associate
    end subroutine nearest_end
+
+   !> Whether n springs all are farther from the ends of their lines that they move to than slack*|d| +
+   !> way*|rate|.
+   pure logical function all_are_far(n, d, rate, lower, upper, slack, way)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: d(n), rate(n), lower(n), upper(n), slack, way
+      real(wp) :: near, up, room
+      integer :: i
+
+      near = 0.0_wp
+      !$omp simd reduction(max:near) private(up, room)
+      do i = 1, n
+         ! One comparison, so that no branch keeps the loop from vectors. An end is no factor here: beside
+         ! zero it is the smallest number there is, by which processors multiply a hundred times slower.
+         up = 0.5_wp + sign(0.5_wp, rate(i))
+         room = up*(upper(i) - d(i)) + (1.0_wp - up)*(d(i) - lower(i))
+         near = max(near, merge(0.0_wp, 1.0_wp, room - slack*abs(d(i)) > way*abs(rate(i))))
+      end do
+      all_are_far = .not. near > 0.0_wp
+   end function all_are_far
 
    !> How many times its rate a spring moves over a distance; `huge` on a line without end, or where the
    !> quotient would overflow.
@@ -100,7 +151,7 @@ contains
       real(wp), intent(in), contiguous :: q(:), rate(:)
       !> The motion is to q + stride*rate
       real(wp), intent(in) :: stride
-      !> A spring is near the end of its line if the distance left is at most slack*|end| + way*|rate|
+      !> A spring is near the end of its line if the distance left is at most slack*|d| + way*|rate|
       real(wp), intent(in) :: slack, way
       !> The springs near the ends that they approach, and their number
       integer, intent(out) :: near(moving), count
@@ -122,7 +173,7 @@ contains
       real(wp), intent(inout) :: d(n), work(n), lower(n), upper(n)
       integer, intent(out) :: near(n), count
       real(wp) :: to
-      integer :: i
+      integer :: first, last, i
 
       !$omp simd
       do i = 1, n
@@ -131,18 +182,24 @@ contains
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
          d(i) = to
       end do
-      count = 0
       do i = 1, n
          if (unload_on_reversal(i) > 0) lower(i) = d(i)
          if (unload_on_reversal(i) < 0) upper(i) = d(i)
-         if (rate(i) > 0.0_wp) then
-            if (upper(i) - d(i) > slack*abs(upper(i)) + way*rate(i)) cycle
-         else
-            ! The rate is not above zero here, so the last term is not below it.
-            if (d(i) - lower(i) > slack*abs(lower(i)) - way*rate(i)) cycle
-         end if
-         count = count + 1
-         near(count) = i
+      end do
+      count = 0
+      do first = 1, n, block_length
+         last = min(first + block_length - 1, n)
+         if (all_are_far(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
+                         upper(first:last), slack, way)) cycle
+         do i = first, last
+            if (rate(i) > 0.0_wp) then
+               if (upper(i) - d(i) - slack*abs(d(i)) > way*rate(i)) cycle
+            else
+               if (d(i) - lower(i) - slack*abs(d(i)) > -way*rate(i)) cycle
+            end if
+            count = count + 1
+            near(count) = i
+         end do
       end do
    end subroutine advance_along
 

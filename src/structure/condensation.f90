@@ -33,6 +33,8 @@ module rbs_structure_condensation
       !> Whether it is known at all, and the springs that it belongs to (parts)
       logical :: is_known = .false.
       real(wp), allocatable :: branch(:)
+      !> Whether it has changed since a band was filled with it, see `mark_columns` of the structure
+      logical :: is_new = .true.
       !> Rows, present stiffness, and initial one in size (springs)
       real(wp), allocatable :: p(:, :), k(:), k0(:)
       !> Directions of pairs of springs that turn with their stiffness: cosine and sine (2, pairs)
@@ -139,6 +141,7 @@ contains
          self%snaps_back = negative_directions(n, self%k, k_basis, flexibility) > spared
       end if
       self%is_known = .true.
+      self%is_new = .true.
    end subroutine condense
 
    !> The softest springs with independent rows, and all rows as sums of theirs.

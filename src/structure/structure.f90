@@ -158,7 +158,7 @@ module rbs_structure_structure
       ! Members that fail during a run
       procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
       ! Where deformations follow from the unknowns and the present stiffness of the springs
-      procedure :: linearise, damp, add_damping, size_of_parts, clear_round_off, set_shape
+      procedure :: linearise, mark_columns, damp, add_damping, size_of_parts, clear_round_off, set_shape
       procedure :: work_of_dead_load, create_springs, add_ground, base_force, work_of
    end type structure_type
 
@@ -249,7 +249,7 @@ module rbs_structure_structure
       end subroutine find_axial_forces
 
       !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
-      subroutine assemble_springs(self, k, tangent, band)
+      subroutine assemble_springs(self, k, tangent, band, columns)
          import :: structure_type, series_tangent, wp
          class(structure_type), intent(in) :: self
          !> Stiffness of the springs, and the tangent of it (see `linearise`)
@@ -257,6 +257,8 @@ module rbs_structure_structure
          type(series_tangent), intent(in) :: tangent(:)
          !> (half_width + 1, unknowns)
          real(wp), intent(inout), contiguous :: band(:, :)
+         !> The columns that are filled, of those of `mark_columns` (unknowns); without it, all
+         logical, intent(in), optional, contiguous :: columns(:)
       end subroutine assemble_springs
 
       !> Add the geometric stiffness of axial forces to a lower band.
@@ -617,6 +619,17 @@ contains
       unstable = 0
       if (present(shares)) shares = .false.
    end subroutine linearise
+
+   !> Mark the columns of the stiffness that have changed since the last call; here all.
+   subroutine mark_columns(self, tangent, columns)
+      class(structure_type), intent(in) :: self
+      !> See `linearise`
+      type(series_tangent), intent(inout) :: tangent(:)
+      !> (unknowns)
+      logical, intent(inout), contiguous :: columns(:)
+
+      columns = .true.
+   end subroutine mark_columns
 
    !> Add forces of the damping of modes or stiffness that is no damping of the springs one by one; here none.
    subroutine damp(self, v, tangent, g)

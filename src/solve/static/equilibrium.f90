@@ -75,6 +75,8 @@ module rbs_solve_static_equilibrium
       type(known_rates), private :: known
       !> Pivots of the initial stiffness (unknowns), and the band of the axial forces
       real(wp), allocatable, private :: pivot(:), geometric(:, :)
+      !> Columns of the band that are filled anew before it is factored (unknowns)
+      logical, allocatable, private :: renewed(:)
       !> Unknowns that stay where they are (unknowns)
       logical, allocatable, private :: still(:)
       logical, private :: has_still = .false.
@@ -145,6 +147,7 @@ contains
       call self%matrix%factor()
       self%pivot = 1.0_wp/self%matrix%triangle(1, :)
       allocate (self%geometric, source=0.0_wp*initial%band)
+      allocate (self%renewed(m), source=.true.)
       if (structure%axially_loaded) call structure%add_geometric(self%axial, self%geometric)
    end subroutine create
 
@@ -368,12 +371,19 @@ contains
       logical, intent(in) :: by_force
       !> Whether the matrix is regular, under a driven force positive definite
       logical, intent(out) :: found
+      integer :: i
 
       associate (structure => self%structure, matrix => self%matrix)
-         matrix%band = self%geometric
-         call structure%add_stiffness(k, self%tangent, matrix%band)
+         ! Where one spring has changed its line, few columns differ.
+         call structure%mark_columns(self%tangent, self%renewed)
+         if (self%has_still) self%renewed = self%renewed .or. self%still
+         do i = 1, size(self%renewed)
+            if (self%renewed(i)) matrix%band(:, i) = self%geometric(:, i)
+         end do
+         call structure%add_stiffness(k, self%tangent, matrix%band, self%renewed)
          call hold_still(self)
-         call matrix%factor()
+         call matrix%factor(self%renewed)
+         self%renewed = .false.
          ! The last pivots of a long chain are small by themselves; their ratio to the sums before counts.
          matrix%positive = matrix%negative == 0 .and. &
                            maxval(matrix%triangle(1, :)*self%pivot) < 1.0_wp/no_stiffness
@@ -390,8 +400,15 @@ contains
       integer, intent(in) :: springs
       !> Initial stiffness and motion of the springs; twice the work of the correction [J]
       real(wp), intent(in) :: initial(springs), motion(springs), work
+      real(wp) :: stiff_work
+      integer :: i
 
-      has_no_stiffness = abs(work) < no_stiffness*sum(initial*motion**2)
+      stiff_work = 0.0_wp
+      !$omp simd reduction(+:stiff_work)
+      do i = 1, springs
+         stiff_work = stiff_work + initial(i)*motion(i)**2
+      end do
+      has_no_stiffness = abs(work) < no_stiffness*stiff_work
    end function has_no_stiffness
 
    !> Springs without stiffness share a motion as with a hardening in proportion to their initial stiffness,
@@ -453,7 +470,7 @@ contains
       signal = 0.0_wp
       if (.not. self%of_dead_load) signal(lateral) = force
       associate (structure => self%structure)
-         self%f = springs%forces(springs%d)
+         call springs%find_forces(springs%d, self%f)
          call structure%forces(springs%d, signal, self%axial, self%tangent, self%f, self%residual, &
                                self%inner, merge(force, 1.0_wp, self%of_dead_load))
          ! All of the dead load on the structure without deformations

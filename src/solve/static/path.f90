@@ -37,6 +37,8 @@ module rbs_solve_static_path
    !> A displacement below this share of the height and a force below this share of the axial load have no
    !> digits to lose.
    real(wp), parameter :: no_digits = 1.0e-3_wp
+   !> Growth of the displacement after which springs are measured again.
+   real(wp), parameter :: growth = 1.1_wp
    !> Displacement, in shares of the height, and rotation by which stiff springs have forces and works.
    real(wp), parameter :: small_motion = 1.0e-6_wp
    !> A displacement below this share of the height is round-off.
@@ -117,6 +119,9 @@ module rbs_solve_static_path
       !> Tolerances of a state of the structure, and whether the present point violates them
       type(row_check), private :: check
       logical, private :: violates_balance = .false.
+      !> Position of the potential that was found last, and that potential [J]: a corner asks for it twice
+      real(wp), allocatable, private :: position(:)
+      real(wp), private :: potential = 0.0_wp
       !> Rotations of the bodies, a work array (n)
       real(wp), allocatable, private :: rotation(:)
       !> Report on a corner between two targets: its summary, and its recorder if the row is to be kept
@@ -404,8 +409,8 @@ contains
          check%largest_force = max(check%largest_force, abs(self%force))
          check%largest_work = max(check%largest_work, abs(energy%input), abs(energy%spring), &
                                   abs(energy%axial))
-         ! Springs are measured only where their scales may grow, or would decide.
-         if (abs(self%displacement) > check%farthest .or. balance_fault() > 0) then
+         ! Springs are measured only where their scales may have grown by a share, or would decide.
+         if (abs(self%displacement) > growth*check%farthest .or. balance_fault() > 0) then
             check%farthest = max(check%farthest, abs(self%displacement))
             call measure_springs(springs%count, self%structure%initial_stiffness, check%share, springs%d, &
                                  springs%d0, springs%f0, springs%k, check%largest_force, &
@@ -587,12 +592,19 @@ contains
 
    !> The energies at the present point, and the residual of their balance.
    type(energy_type) function energies(self) result(energy)
-      class(static_path), intent(in) :: self
+      class(static_path), intent(inout) :: self
+      logical :: is_new
 
+      is_new = .not. allocated(self%position)
+      if (.not. is_new) is_new = .not. all(abs(self%springs%d - self%position) <= 0.0_wp)
+      if (is_new) then
+         self%position = self%springs%d
+         self%potential = self%without_top_load%potential_energy(self%springs%d)
+      end if
       energy%input = self%work
       energy%spring = total(self%springs%count, self%springs%work)
       energy%damping = self%damped_before
-      energy%axial = self%without_top_load%potential_energy(self%springs%d) + self%load_work
+      energy%axial = self%potential + self%load_work
       energy%residual = self%work + self%at_begin - energy%spring - energy%damping - energy%axial
    end function energies
 

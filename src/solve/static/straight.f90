@@ -440,15 +440,14 @@ contains
       real(wp), intent(in) :: d(n), correction(n), rate(n), lower(n), upper(n)
       !> Deformations with their corrections, which are moved back to an end that they must not pass
       real(wp), intent(inout) :: q(n)
+      logical :: is_large
       integer :: i
 
+      !$omp simd private(is_large)
       do i = 1, n
-         if (abs(correction(i)) > small_correction*abs(d(i))) then
-            q(i) = min(max(q(i), lower(i)), upper(i))
-         else
-            if (.not. rate(i) > 0.0_wp) q(i) = max(q(i), lower(i))
-            if (.not. rate(i) < 0.0_wp) q(i) = min(q(i), upper(i))
-         end if
+         is_large = abs(correction(i)) > small_correction*abs(d(i))
+         q(i) = merge(q(i), max(q(i), lower(i)), rate(i) > 0.0_wp .and. .not. is_large)
+         q(i) = merge(q(i), min(q(i), upper(i)), rate(i) < 0.0_wp .and. .not. is_large)
       end do
    end subroutine keep_within
 

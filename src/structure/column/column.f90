@@ -253,13 +253,15 @@ contains
 
    !> Add B' diag(k) B of the springs to a lower band; B gives deformations of the joints from displacements
    !> of the bodies. A chain does not use `tangent`.
-   subroutine add_stiffness(self, k, tangent, band)
+   subroutine add_stiffness(self, k, tangent, band, columns)
       class(column_type), intent(in) :: self
       !> Stiffness of the springs by kind: slips, relative rotations, openings (springs)
       real(wp), intent(in), contiguous :: k(:)
       type(series_tangent), intent(in) :: tangent(:)
       !> (4, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
+      !> All columns are filled
+      logical, intent(in), optional, contiguous :: columns(:)
 
       call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
    end subroutine add_stiffness

@@ -238,14 +238,23 @@ contains
    end subroutine add_end_forces
 
    !> Add B' A B of an element to a lower band, B its elongation and rotations per unknown.
-   pure subroutine add_band(e, a, band)
+   pure subroutine add_band(e, a, band, columns)
       type(frame_element), intent(in) :: e
       !> Stiffness of the ends [N/m, N, N m]
       real(wp), intent(in) :: a(3, 3)
       !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
+      !> The columns that are filled (unknowns); without it, all
+      logical, intent(in), optional, contiguous :: columns(:)
+      integer :: j
 
-      if (e%width == ends) then
+      if (present(columns)) then
+         ! Column by column, as most elements have none of these
+         do j = 1, e%width
+            if (.not. columns(e%unknown(j))) cycle
+            call add_column(e%width, e%number, e%to_basic, a, j, band)
+         end do
+      else if (e%width == ends) then
          call add_product(ends, e%number, e%to_basic, a, band)
       else
          call add_product(e%width, e%number, e%to_basic, a, band)
@@ -278,22 +287,33 @@ contains
       real(wp), intent(in) :: b(3, width), a(3, 3)
       !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: row(3)
-      integer :: i, j
+      integer :: j
 
       do j = 1, width
-         associate (column => number(j))
-            if (column == 0) cycle
-            row = a(:, 1)*b(1, j) + a(:, 2)*b(2, j) + a(:, 3)*b(3, j)
-            do i = 1, width
-               if (number(i) < column) cycle
-               associate (entry => band(1 + number(i) - column, column))
-                  entry = entry + sum(b(:, i)*row)
-               end associate
-            end do
-         end associate
+         call add_column(width, number, b, a, j, band)
       end do
    end subroutine add_product
+
+   !> Add one column of B' A B, that of the unknown j of the element, to a lower band.
+   pure subroutine add_column(width, number, b, a, j, band)
+      !> As in `add_product`
+      integer, intent(in) :: width, number(width), j
+      real(wp), intent(in) :: b(3, width), a(3, 3)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      real(wp) :: row(3)
+      integer :: i
+
+      associate (column => number(j))
+         if (column == 0) return
+         row = a(:, 1)*b(1, j) + a(:, 2)*b(2, j) + a(:, 3)*b(3, j)
+         do i = 1, width
+            if (number(i) < column) cycle
+            associate (entry => band(1 + number(i) - column, column))
+               entry = entry + sum(b(:, i)*row)
+            end associate
+         end do
+      end associate
+   end subroutine add_column
 
    !> Changes of deformations, openings and rotations with those of the ends of their element.
    pure subroutine spring_motion(e, tangent, q, d)

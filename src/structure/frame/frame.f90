@@ -103,6 +103,7 @@ module rbs_structure_frame_frame
       procedure :: unknown_rates, forces, axial_forces, add_stiffness, add_geometric, rotations, storey_drifts
       procedure :: potential_energy, channels, fill_row, base_force, set_shape, check_loads, is_removed
       procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
+      procedure :: mark_columns, top_displacement
    end type frame_type
 
    interface
@@ -241,6 +242,18 @@ module rbs_structure_frame_frame
 
 contains
 
+   !> Displacement of the top along x [m]: of the position, springs have no part in it and are passed over,
+   !> by fours, as `inner_product` adds up.
+   pure real(wp) function top_displacement(self, d) result(x)
+      class(frame_type), intent(in) :: self
+      !> Position, or its change (coordinates)
+      real(wp), intent(in), contiguous :: d(:)
+
+      associate (passed => self%springs - mod(self%springs, 4))
+         x = inner_product(size(d) - passed, self%arm(passed + 1:), d(passed + 1:))
+      end associate
+   end function top_displacement
+
    !> Displacement of a node along x of its plane [m].
    pure real(wp) function along_x(self, node, x) result(moved)
       class(frame_type), intent(in) :: self
@@ -322,9 +335,28 @@ contains
       if (present(shares)) shares = any(tangent%is_mechanism)
    end subroutine linearise
 
+   !> Mark the columns of the stiffness that elements with a new tangent take part in, and those of springs
+   !> from the ground.
+   subroutine mark_columns(self, tangent, columns)
+      class(frame_type), intent(in) :: self
+      !> Tangents of the elements, which are new no more (elements)
+      type(series_tangent), intent(inout) :: tangent(:)
+      !> (unknowns)
+      logical, intent(inout), contiguous :: columns(:)
+      integer :: i
+
+      do i = 1, size(tangent)
+         if (.not. tangent(i)%is_new) cycle
+         tangent(i)%is_new = .false.
+         ! Where a support holds a displacement this is the first unknown, which does no harm.
+         columns(self%element(i)%unknown(:self%element(i)%width)) = .true.
+      end do
+      columns(self%ground) = .true.
+   end subroutine mark_columns
+
    !> Add the stiffness of the elements, from their tangents, and of the springs from the ground to a lower
    !> band.
-   subroutine add_stiffness(self, k, tangent, band)
+   subroutine add_stiffness(self, k, tangent, band, columns)
       class(frame_type), intent(in) :: self
       !> Stiffness of the springs (springs); those in elements are in the tangents already
       real(wp), intent(in), contiguous :: k(:)
@@ -332,10 +364,12 @@ contains
       type(series_tangent), intent(in) :: tangent(:)
       !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
+      !> The columns that are filled, with those of springs from the ground (unknowns); without it, all
+      logical, intent(in), optional, contiguous :: columns(:)
       integer :: i
 
       do i = 1, size(self%element)
-         call add_band(self%element(i), tangent(i)%stiffness, band)
+         call add_band(self%element(i), tangent(i)%stiffness, band, columns)
       end do
       band(1, self%ground) = band(1, self%ground) + k(self%member_springs + 1:)
    end subroutine add_stiffness

@@ -132,11 +132,17 @@ contains
 
    !> Potential of the dead load and of the second-order work, and energy of the elastic rests, at d [J].
    module procedure potential_energy
-      real(wp) :: g(self%unknowns)
+      real(wp) :: g(self%unknowns), in_springs
       integer :: i
 
       associate (x => d(self%springs + 1:self%joints%before))
-         energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%member_springs))
+         energy = -sum(self%dead*x)
+         in_springs = 0.0_wp
+         do i = 1, self%member_springs
+            ! Most springs have no dead load.
+            if (abs(self%dead_force(i)) > 0.0_wp) in_springs = in_springs + self%dead_force(i)*d(i)
+         end do
+         energy = energy - in_springs
          do i = 1, self%members
             associate (e => self%element(i))
                energy = energy + energy_of_rest(e, compatibility_error(e, end_motion(e, x), d, 1.0_wp))
