@@ -16,8 +16,11 @@ module rbs_hysteresis_layer_joints
       !> First and last layer (joints); joint of each spring, 0 for none (springs), and springs that are no
       !> layers
       integer, allocatable :: first(:), last(:), of(:), others(:)
-      !> Places of forces among those of all springs, and of motions in a position
-      integer, allocatable :: with_force(:), with_motion(:)
+      !> Places of forces among those of all springs
+      integer, allocatable :: with_force(:)
+      !> Coordinates that are no layers, which follow from the others: first and last of each run of them
+      !> (2, runs)
+      integer, allocatable :: run(:, :)
       !> Distances of the layers (springs) [m]
       real(wp), allocatable :: y(:)
       !> Largest distance of a layer (joints) [m]
@@ -51,6 +54,7 @@ contains
       real(wp), intent(in) :: y(:)
       !> Number of coordinates of a position before those of the joints
       integer, intent(in) :: before
+      logical :: moves(0:before + 2*maxval([0, of]) + 1)
       integer :: i, j
 
       self%count = maxval([0, of])
@@ -61,7 +65,13 @@ contains
       self%first = [(findloc(of, j, dim=1), j=1, self%count)]
       self%last = [(findloc(of, j, dim=1, back=.true.), j=1, self%count)]
       self%with_force = [self%others, self%first, self%first + 1]
-      self%with_motion = [self%others, (before + i, i=1, 2*self%count)]
+      moves = .true.
+      moves(1:size(of)) = of == 0
+      moves([0, ubound(moves, 1)]) = .false.
+      associate (first => pack([(i, i=1, size(moves) - 2)], moves(1:) .and. .not. moves(:size(moves) - 2)), &
+                 last => pack([(i, i=1, size(moves) - 2)], moves(1:) .and. .not. moves(2:)))
+         self%run = transpose(reshape([first, last], [size(first), 2]))
+      end associate
       self%reach = [(maxval(abs(y), mask=of == j), j=1, self%count)]
       allocate (self%sums(5, self%count), self%anchor(2, self%count), self%seen(2, self%count), &
                 source=0.0_wp)

@@ -94,6 +94,9 @@ module rbs_structure_structure
       type(layer_joints) :: joints
       !> Displacement of the top per coordinate, for small rotations, which static paths control (coordinates)
       real(wp), allocatable :: arm(:)
+      !> Zeros that it begins with, or fewer: a multiple of four, so that the sums of `inner_product` stay the
+      !> same
+      integer :: before_arm = 0
       !> The same per unknown (unknowns)
       real(wp), allocatable :: control(:)
       !> The spring whose force is the base shear; 0: `base_force` gives it
@@ -429,7 +432,7 @@ contains
       !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
 
-      x = inner_product(size(d), self%arm, d)
+      x = inner_product(size(d) - self%before_arm, self%arm(self%before_arm + 1:), d(self%before_arm + 1:))
    end function top_displacement
 
    !> Drift ratios of the storeys; a structure that is no frame has none.

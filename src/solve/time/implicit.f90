@@ -5,7 +5,7 @@
 !> method oscillates between two branches, the solution moves from end to end instead. A step that
 !> does not converge is taken back to the stored state and cut in two.
 module rbs_solve_time_implicit
-   use rbs_base_arrays, only: swap
+   use rbs_base_arrays, only: copy, swap
    use rbs_base_inner_product, only: inner_product, total
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -24,6 +24,9 @@ module rbs_solve_time_implicit
    !> How often a spring may leave its lines while the residual does not decrease.
    integer, parameter :: most_returns = 5
 
+   !> Steps on the same lines that may follow each other without a look at their residuals.
+   integer, parameter :: most_unchecked = 15
+
    !> Resistance, as a share of the initial stiffness, by which springs without stiffness share a motion.
    real(wp), parameter :: little = 1.0e-3_wp
 
@@ -40,6 +43,11 @@ module rbs_solve_time_implicit
       !> Works of loads and damping in the step, and whether they are known [J]
       real(wp), private :: of_loads = 0.0_wp, of_damping = 0.0_wp
       logical, private :: weighed = .false.
+      !> Length of step and version of the lines with which a first trial left no residual, number of steps
+      !> since then that were not checked, and whether the trial is the first of its step
+      real(wp), private :: sure_step = 0.0_wp
+      integer, private :: sure_version = -1, unchecked = 0
+      logical, private :: is_first = .false.
       !> Whether springs without stiffness shared a motion, in an element or about a node, in a trial
       logical, private :: ambiguous = .false.
       !> How far the unknowns had moved where the last round of `snap` began (unknowns); how often each spring
@@ -105,6 +113,7 @@ contains
       type(state_type), intent(inout) :: state
 
       call self%step%start(state)
+      self%sure_version = -1
       if (allocated(self%dx)) return
       call self%tangent%create(state%motion%structure)
       allocate (self%anchor(state%motion%structure%unknowns), self%returns(size(state%q)))
@@ -335,7 +344,8 @@ contains
 
       self%step%moved = 0.0_wp
       self%step%resistance = 0.0_wp
-      self%step%q1 = state%q
+      self%is_first = .true.
+      call copy(size(state%q), state%q, self%step%q1)
       call self%step%find_first(state, self%h, self%load, self%residual)
    end subroutine try_start
 
@@ -378,14 +388,25 @@ contains
                self%of_loads = self%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
             end if
          end do
-         call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
+         if (motion%structure%is_implicit .and. .not. motion%springs_damp) then
+            ! Of a frame only the velocities of the unknowns count.
+            associate (before => motion%structure%joints%before)
+               self%step%w1(before - size(self%step%v1) + 1:before) = self%step%v1
+            end associate
+         else
+            call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
+         end if
          if (motion%varies) then
             before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
             after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
             self%of_loads = self%of_loads + 0.5_wp*h*(before + after)
          end if
          if (motion%damped) then
-            self%mean(:) = 0.5_wp*(state%v + self%step%w1)
+            do i = 1, size(self%step%run, 2)
+               associate (first => self%step%run(1, i), last => self%step%run(2, i))
+                  self%mean(first:last) = 0.5_wp*(state%v(first:last) + self%step%w1(first:last))
+               end associate
+            end do
             self%of_damping = h*motion%damping_power(state%springs, self%step%q1, self%mean)
             ! Elements damp as wholes; the residual is not needed any more.
             call motion%structure%unknown_rates(self%mean, self%dx)
@@ -427,8 +448,27 @@ contains
       self%ambiguous = self%ambiguous .or. self%step%shares .or. self%tangent%holds
       call state%motion%structure%spring_rates(self%step%now%tangent, self%dx, self%dq)
       ! Springs between the unknowns are corrected by themselves.
-      if (size(self%step%now%correction) > 0) self%dq = self%dq + self%step%now%correction
+      if (size(self%step%now%correction) > 0) then
+         call add_share(self%step%run, 1.0_wp, self%step%now%correction, self%dq)
+      end if
    end subroutine correct
+
+   !> Add a share of a change to a position; its layers stay.
+   pure subroutine add_share(run, share, change, q)
+      !> Runs of the coordinates that are no layers (2, runs)
+      integer, intent(in) :: run(:, :)
+      real(wp), intent(in) :: share
+      !> Change and position (coordinates)
+      real(wp), intent(in), contiguous :: change(:)
+      real(wp), intent(inout), contiguous :: q(:)
+      integer :: i
+
+      do i = 1, size(run, 2)
+         associate (first => run(1, i), last => run(2, i))
+            q(first:last) = q(first:last) + share*change(first:last)
+         end associate
+      end do
+   end subroutine add_share
 
    !> Go on (or back) by a share of the correction, and find the residual there; `huge` out of bounds.
    subroutine try(self, state, share)
@@ -438,11 +478,42 @@ contains
       logical :: in_range
 
       self%residual = huge(1.0_wp)
-      self%step%q1 = self%step%q1 + share*self%dq
+      ! Layers follow when springs leave their lines, or the step has ended.
+      call add_share(self%step%run, share, self%dq, self%step%q1)
       self%step%moved = self%step%moved + share*self%dx
       call self%move_springs(state, self%step%q1, in_range)
-      if (in_range) call self%step%find_residual(state, self%h, self%load, self%residual)
+      if (in_range) call judge_trial(self, state)
    end subroutine try
+
+   !> Find the residual of a trial. The tangent step of a frame is exact as long as no line changes: if it has
+   !> left no residual with these lines and this length, it leaves none in the next steps. They are checked
+   !> from time to time, so that round-off does not gather.
+   subroutine judge_trial(self, state)
+      type(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      logical :: is_exact
+
+      associate (motion => state%motion, structure => state%motion%structure, &
+                 version => state%springs%version)
+         is_exact = self%is_first .and. .not. (self%marked .or. self%ambiguous .or. motion%varies .or. &
+                                               allocated(structure%modal_momenta)) .and. &
+                    size(self%step%now%tangent) > 0 .and. .not. self%step%resistance > 0.0_wp
+         self%is_first = .false.
+         if (is_exact .and. version == self%sure_version .and. self%unchecked < most_unchecked .and. &
+             .not. abs(self%h - self%sure_step) > 0.0_wp) then
+            self%unchecked = self%unchecked + 1
+            call self%step%end_on_lines(structure%inertias, self%h, self%load)
+            self%residual = 0.0_wp
+            return
+         end if
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+         self%sure_version = -1
+         if (.not. is_exact .or. self%residual > self%wanted) return
+         self%sure_version = version
+         self%sure_step = self%h
+         self%unchecked = 0
+      end associate
+   end subroutine judge_trial
 
    !> Work of the residual on the correction [J].
    real(wp) function work_of_residual(self) result(work)

@@ -39,6 +39,8 @@ module rbs_solve_time_implicit_balance
       real(wp) :: load(signals) = 0.0_wp
       !> Position at the end of the step and its velocity (coordinates)
       real(wp), allocatable :: q1(:), w1(:)
+      !> Runs of the coordinates that are no layers (2, runs), see `layer_joints`
+      integer, allocatable :: run(:, :)
       !> Whether forces and tangents are those of the end of the last step
       logical, private :: known = .false.
       !> Forces of the present trial
@@ -67,7 +69,7 @@ module rbs_solve_time_implicit_balance
       !> (coordinates)
       real(wp), allocatable, private :: unit_factor(:), spring_factor(:), stiff(:)
    contains
-      procedure :: start, find_residual, find_first
+      procedure :: start, find_residual, find_first, end_on_lines
       procedure, private :: fit_elements, measure
       procedure :: is_round_off, go_on
       procedure, private :: set_damping
@@ -124,6 +126,11 @@ contains
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
             allocate (self%k(springs))
+            if (structure%joints%count > 0) then
+               self%run = structure%joints%run
+            else
+               self%run = reshape([1, structure%coordinates], [2, 1])
+            end if
             if (structure%tangent_damping) then
                self%damping_tangent = structure%initial_tangent
             else
@@ -291,19 +298,51 @@ contains
       call compare(self, state, relative)
    end subroutine find_first
 
+   !> End the step with a correction that was exact, as no line has changed: the forces on the unknowns are
+   !> those of the equation of the step, and nothing between the unknowns is left to be corrected.
+   subroutine end_on_lines(self, mass, h, load)
+      class(step_balance), intent(inout) :: self
+      !> Mass or inertia of the unknowns (unknowns); step [s]; loads at its end
+      real(wp), intent(in), contiguous :: mass(:)
+      real(wp), intent(in) :: h, load(signals)
+      integer :: i
+
+      self%load = load
+      call end_of_step(self, h)
+      self%r(:) = 0.0_wp
+      do i = 1, size(mass)
+         self%g1(i) = 0.0_wp
+         if (mass(i) > 0.0_wp) self%g1(i) = (mass(i)*((1.0_wp - self%alpha_m)*self%a1(i) &
+                                                      + self%alpha_m*self%a0(i)) &
+                                             - self%alpha_f*self%g0(i))/(1.0_wp - self%alpha_f)
+      end do
+      do i = 1, size(self%run, 2)
+         self%now%correction(self%run(1, i):self%run(2, i)) = 0.0_wp
+      end do
+      self%known = .false.
+   end subroutine end_on_lines
+
    !> Find the residual of the balance in the trial, and its size relative to the forces (`relative`).
    subroutine compare(self, state, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
       real(wp), intent(out) :: relative
+      real(wp) :: rest
+      integer :: j
 
       associate (structure => state%motion%structure)
          call balance(size(self%r), self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, &
                       self%g0, self%g1, self%r)
          call self%measure(structure, self%a1, self%load, relative)
          if (size(self%now%correction) > 0) then
-            relative = max(relative, largest(structure%joints%with_motion, self%stiff, self%now%correction) &
-                           /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
+            rest = 0.0_wp
+            do j = 1, size(self%run, 2)
+               associate (first => self%run(1, j), last => self%run(2, j))
+                  rest = max(rest, largest_product(last - first + 1, self%stiff(first:last), &
+                                                   self%now%correction(first:last)))
+               end associate
+            end do
+            relative = max(relative, rest/max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
       end associate
    end subroutine compare
@@ -437,16 +476,26 @@ contains
       if (size(chosen) == 0) return
       ! Where no spring is a layer all places count, one after the other.
       if (chosen(size(chosen)) == size(chosen)) then
-         !$omp simd reduction(max:largest)
-         do i = 1, size(chosen)
-            largest = max(largest, abs(a(i)*b(i)))
-         end do
+         largest = largest_product(size(chosen), a, b)
          return
       end if
       do i = 1, size(chosen)
          largest = max(largest, abs(a(chosen(i))*b(chosen(i))))
       end do
    end function largest
+
+   !> The largest product of two numbers, in size, of two lists.
+   pure real(wp) function largest_product(n, a, b) result(largest)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: a(n), b(n)
+      integer :: i
+
+      largest = 0.0_wp
+      !$omp simd reduction(max:largest)
+      do i = 1, n
+         largest = max(largest, abs(a(i)*b(i)))
+      end do
+   end function largest_product
 
    !> Whether the residual is the round-off of the terms of the step. Modes that the step does not
    !> resolve have accelerations far beyond the motion of the step: after a shock h^2 a0 is many turns.

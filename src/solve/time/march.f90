@@ -2,6 +2,7 @@
 module rbs_solve_time_march
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_inner_product, only: total
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: fall_of
@@ -300,7 +301,7 @@ contains
 
       energy%input = state%of_loads
       energy%kinetic = state%motion%structure%kinetic_energy(state%q, state%v) + state%along_joints
-      energy%spring = sum(state%springs%work)
+      energy%spring = total(state%springs%count, state%springs%work)
       energy%damping = state%of_damping
       energy%axial = state%motion%structure%potential_energy(state%q)
       energy%snaps = state%in_snaps

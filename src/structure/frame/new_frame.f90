@@ -140,6 +140,7 @@ contains
          else
             call put_on_floor(frame, frame%storeys, frame%plan%direction, frame%arm(springs + 1:))
          end if
+         frame%before_arm = 4*(springs/4)
          frame%control = frame%arm(springs + 1:springs + frame%unknowns)
       end associate
       call set_ground(frame, node, member, spring)
