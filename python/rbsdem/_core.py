@@ -86,7 +86,8 @@ def joined(parts: Iterable[Statement | tuple[str, Mapping[str, Any]]]) -> Statem
 
 def group(name: str, values: Mapping[str, Any]) -> Statement:
     """Return the statement of one group: names and values; None and empty lists are left out."""
-    words, numbers = [name], list[float]()
+    words: list[str] = [name]
+    numbers: list[float] = []
     for key, value in values.items():
         if type(value) is float or (type(value) is int and abs(value) < _EXACT):
             words.append(key)

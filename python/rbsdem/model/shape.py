@@ -1025,10 +1025,11 @@ def checked_section(section: object) -> Section:
     )
 
 
-def _by_height(bar: Bar) -> tuple[float, float, float]:
+def _by_height(bar: Bar) -> tuple[int, float, float]:
     """Return by what bars are ordered; heights that differ by round-off are one."""
     y, area, steel = bar
-    return round(y, 9), area, steel.fy
+    # `round` takes long.
+    return math.floor(1e9 * y + 0.5), area, steel.fy
 
 
 def _rows(bars: Any, face: str) -> tuple[Bars, ...]:
