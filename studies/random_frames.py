@@ -12,6 +12,8 @@ KIND is a relation of `tests/python/test_invariants_frames.py` or a set of work:
 - `pushes`: push-overs to a drift of 5 %, which get there or end with a message that names a member;
 - `leaps`: pushes to a drift of 3 % and cycles to 1 and 2 % by `method="newton"`, whose errors and
   times are compared with those of paths from event to event;
+- `doors`: cycles of drawn frames and buildings with walls, infills and laps, by hand, by a case
+  file, saved and read again, and cut and resumed: each has the same bits;
 - `kernels`: rows of cycles, for another kernel of OpenBLAS: run it with `--write FILE`, then with
   another value of OPENBLAS_CORETYPE and `--against FILE`.
 
@@ -29,6 +31,7 @@ import re
 import resource
 import signal
 import sys
+import tempfile
 import time
 import warnings
 import zlib
@@ -52,6 +55,7 @@ SETS = {
     "relations": (),
     "pushes": (),
     "leaps": (),
+    "doors": (),
     "kernels": (),
 }  # fmt: skip
 
@@ -74,7 +78,7 @@ os.environ |= {"RBSDEM_SEED": str(ASKED.seed), "RBSDEM_STOREYS": "6"}
 
 import test_invariants_frames  # noqa: E402, F401
 from relations import RELATIONS, Discard, ended, replay  # noqa: E402
-from strategies_frames import FAMILIES, building, drifts, frame, plan  # noqa: E402
+from strategies_frames import FAMILIES, building, drifts, frame, house, plan  # noqa: E402
 
 import rbsdem  # noqa: E402
 
@@ -226,6 +230,56 @@ def leapt(family: str, cases: range, points: int, *, cycles: bool) -> None:
     )
 
 
+def through_doors(cases: range) -> None:
+    """Print which drawn frames and buildings have other rows by another way to the same path."""
+
+    def unlike(run: Any, other: Any, at: int = 0) -> list[str]:
+        """Return the channels of which rows from `at` on are not those of another run."""
+        names = [name for name in run.channels if name != "step"]
+        if run.summary["status"] != "completed":
+            names = []  # of such a path the last row is that of its end
+        return [n for n in names if not np.array_equal(run.channels[n][at:], other.channels[n])]
+
+    def judge(case: int) -> str:
+        rng = random_of("doors", case)
+        try:
+            made = house(rng)
+            path = drifts(rng, made, 0.015)
+        except (rbsdem.InputError, rbsdem.SolveError):
+            raise Discard from None
+        at, method = int(rng.integers(1, path.size)), str(rng.choice(["static", "newton"]))
+        follow = partial(rbsdem.cyclic, made, method=method)
+        run = ended(lambda: follow(displacement=path))
+        values = ", ".join(map(repr, path.tolist()))
+        analysis = f"&analysis method = '{method}' /\n"
+        loading = f"&loading drive = 'displacement', values = {values} /\n"
+        with tempfile.TemporaryDirectory() as folder:
+            text, saved = Path(folder) / "case.nml", Path(folder) / "run.npz"
+            text.write_text(made.to_namelist() + analysis + loading)
+            read = rbsdem.read_case(text)
+            found = {"by a case file": unlike(run, ended(read.run))}
+            run.save(saved)
+            found["read again"] = unlike(run, rbsdem.read_result(saved))
+        if read.column != made:
+            return "its case file is of another structure"
+        first = ended(lambda: follow(displacement=path[:at]))
+        if "completed" == first.summary["status"] == run.summary["status"]:
+            rest = ended(lambda: follow(displacement=path[at:], initial=first))
+            found[f"cut at {at} ({method})"] = unlike(run, rest, at)
+        return "; ".join(f"{way}: {names}" for way, names in found.items() if names)
+
+    judged = 0
+    for case in cases:
+        try:
+            fault = capped(judge, case)
+        except (Discard, Late):
+            continue
+        judged += 1
+        if fault:
+            print(f"      case {case}: {fault[:300]}", flush=True)
+    print(f"{judged} of {len(cases)} drawn frames and buildings through all doors", flush=True)
+
+
 def rows(family: str, cases: range) -> list[list[float] | str]:
     """Return the forces of cyclic paths in shares of the largest, or how a case failed."""
 
@@ -270,6 +324,8 @@ def main() -> None:
                 leapt(family, cases, 100, cycles=True)
             for points in (25, 50, 200, 400):
                 leapt("buildings", cases, points, cycles=False)
+        elif kind == "doors":
+            through_doors(cases)
         elif kind == "kernels":
             values = {family: rows(family, cases) for family in (*FAMILIES, "buildings")}
             if ASKED.write:

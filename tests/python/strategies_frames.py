@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from strategies import Rng, between, hardening, layered, rules, spring
 
 import rbsdem
-from rbsdem.frames import Frame, FrameMember
+from rbsdem.frames import Frame, FrameMember, Infill
 from rbsdem.springs import Spring
 
 RULES = [rule for rule in rules("flexure") if rule not in ("layered", "compression")]
@@ -124,6 +125,32 @@ def plan(rng: Rng) -> rbsdem.Building:
         eccentricity=(rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1)),
         direction=float(rng.choice([0.0, 30.0, 90.0, 200.0])),
         kinematics=str(rng.choice(["small", "pdelta"])),
+    )  # fmt: skip
+
+
+def house(rng: Rng) -> Frame:
+    """Return a drawn frame, or a building in plan, with a wall, infills and laps in some."""
+    column, beam = _drawn(rng)
+    bars = column.bars[0][2]
+    mesh = rbsdem.Curtain(0.01, 0.2, bars)
+    wall = rbsdem.WallSection(
+        float(rng.choice([1.2, 2.0])), 0.2, column.concrete, vertical=mesh, horizontal=mesh
+    )
+    storeys, bays = [3.2] * int(rng.integers(1, 3)), [5.0] * int(rng.integers(1, 3))
+    brick = Infill(0.2, fm=between(rng, 1e6, 4e6)) if rng.random() < 0.5 else None
+    more: dict[str, Any] = {"kinematics": str(rng.choice(["small", "pdelta"]))}
+    more |= {"mass": "from_loads", "beams_x" if (in_plan := rng.random() < 0.5) else "beams": beam}
+    if not in_plan:
+        column = replace(column, lap=rbsdem.Lap(0.4)) if rng.random() < 0.5 else column
+        walls = {int(rng.integers(1, len(bays) + 2)): wall} if rng.random() < 0.5 else None
+        return Frame.grid(
+            storeys, bays, columns=column, dead_load=15e3, walls=walls, infills=brick, **more
+        )
+    at = str(rng.choice(["x", "y"])), 1, 1
+    return rbsdem.Building.grid(
+        storeys, bays, [5.0], columns=column, beams_y=beam, floor_load=5e3, infills_x=brick,
+        walls={at: wall} if rng.random() < 0.5 else None, eccentricity=(0.05, 0.0),
+        direction=float(rng.choice([0.0, 30.0, 200.0])), **more,
     )  # fmt: skip
 
 

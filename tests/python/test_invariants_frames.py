@@ -821,12 +821,21 @@ def test_snaps_set_energy_free(rng: Rng) -> float:
 def test_round_off_of_a_motion(rng: Rng) -> float:
     """A motion that is larger by 1e-15 has the same answer, if no force falls.
 
-    Springs without stiffness in a row, too, of whose motion the nodes determine the sum alone.
+    Springs without stiffness in a row, too, of whose motion the nodes determine the sum alone. Left
+    out: answers in which a change of the motion grows, as those of a frame that is about to fall.
     """
     made, time, load = shaken(rng, str(rng.choice(["hardening", "layered"])), panels=False)
     motion = load.pop("ground_acceleration")
-    pair = [move(made, time, ground_acceleration=motion * by, **load) for by in (1.0, 1 + 1e-15)]
-    return apart(*pair)
+
+    def apart_by(share: float) -> float:
+        run = move(made, time, ground_acceleration=motion * (1 + share), **load)
+        return apart(whole, run)
+
+    whole = move(made, time, ground_acceleration=motion, **load)
+    distance = apart_by(1e-15)
+    if distance > 1e-8 and apart_by(1e-11) > 10 * distance:
+        raise Discard
+    return distance
 
 
 def determined(
