@@ -25,7 +25,7 @@ module rbs_solve_time_implicit
    integer, parameter :: most_returns = 5
 
    !> Steps on the same lines that may follow each other without a look at their residuals.
-   integer, parameter :: most_unchecked = 15
+   integer, parameter :: most_unchecked = 7
 
    !> Resistance, as a share of the initial stiffness, by which springs without stiffness share a motion.
    real(wp), parameter :: little = 1.0e-3_wp
