@@ -107,5 +107,10 @@ def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert float(numbers["peak_force_lower"]) < float(numbers["peak_force_upper"])
     assert len(read_rows(out / "1_T5.csv")) == PATH.size
     assert (out / "1_T5.png").stat().st_size > 1e4
+    # Without the friction of the rig the column is weaker.
+    given += ["--no-rig", "--drifts", *drifts]
+    assert main(["predict", str(folder), "T5", *given]) == 0
+    (alone,) = read_rows(out / "numbers.csv")
+    assert float(alone["peak_force_upper"]) < float(numbers["peak_force_upper"])
     assert main(["predict", str(folder), "T5"]) == 2
     assert "--drifts" in capsys.readouterr().err

@@ -13,6 +13,7 @@ from test_building import MORE, B, C
 import rbsdem
 from rbsdem import codes, plot
 from rbsdem.__main__ import main
+from rbsdem._files import figure_bytes
 from rbsdem.errors import AccuracyWarning
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member, TeeSection
 from rbsdem.methods.verification import eccentric_storey, peterson, sprung_storey
@@ -278,14 +279,22 @@ def test_targets_are_amplified_by_torsion_of_the_modes():
 
 
 def test_the_report_of_a_building_has_its_frames(tmp_path, monkeypatch):
-    # Its figures are drawn and not painted, which takes longer than all else.
-    monkeypatch.setattr("rbsdem.web.sheets.figure_bytes", lambda drawn, ending: b"")
+    # Of its figures the plans and the building are painted; all takes longer than the rest.
+    painted: list[bytes] = []
+
+    def first_three(drawn, ending):
+        painted.append(figure_bytes(drawn, ending) if len(painted) < 3 else b"")
+        return painted[-1]
+
+    monkeypatch.setattr("rbsdem.web.sheets.figure_bytes", first_three)
     # Masses of a grid in plan are those of its floors, and its frames have none.
     building = plan(floor_load=6e3, mass="from_loads")
     push = rbsdem.pushover(building, displacement=0.01, points=2)
     text = rbsdem.report(push, tmp_path / "house.html").read_text()
     for heading in ("Inputs", "Building", "x-1 Frame", "x-1 Response", "x-1 Members"):
         assert f"<h2>{heading}</h2>" in text
+    assert [b"Floor 2" in figure for figure in painted[:3]] == [True, True, False]
+    assert all(b"</svg>" in figure for figure in painted[:3])
     tables = {path.name for path in (tmp_path / "house_files").iterdir()}
     assert {"inputs.csv", "x_1_members.csv", "rows.csv"} <= tables
 
@@ -324,6 +333,10 @@ def test_the_command_line_runs_pairs_and_reports(tmp_path, monkeypatch, capsys):
     Path("push.nml").write_text(house.to_namelist() + loading)
     assert run("run", "push.nml", "--report") == 0
     assert "<h2>x-1 Response</h2>" in Path("push.html").read_text()
+    # A report of many runs has the plan too, and does not say that torsion is left out.
+    text = rbsdem.report(rbsdem.ida(house, [pair], levels=[1.0], **SHAKEN), "ida.html").read_text()
+    assert "Building(2 storeys" in text
+    assert "Left out: infills" in text
 
 
 SHAKEN = {"method": "newmark", "dt": 0.01}

@@ -133,6 +133,7 @@ def _is_meant(row: Specimen, name: str) -> bool:
 @click.option("--cycles", type=int, default=2, metavar="N", help="at each drift; 2")
 @click.option("--samples", type=int, default=16, metavar="N", help="of a band; 16")
 @click.option("--near", type=FILE, metavar="DIR", help="folder of tests, for the nearest ones")
+@click.option("--no-rig", is_flag=True, help="the column alone, without the friction of a rig")
 @click.option("--out", type=FOLDER, metavar="DIR", help="write files into this folder")
 def predict(
     table: Path,
@@ -141,6 +142,7 @@ def predict(
     cycles: int,
     samples: int,
     near: Path | None,
+    no_rig: bool,
     out: Path | None,
 ) -> int:
     r"""Predict columns of a table from their properties, with 80 % bands.
@@ -172,6 +174,7 @@ def predict(
                     samples=samples,
                     displacement=_path(specimen, path),
                     near=others,
+                    rig=not no_rig,
                 )
         except InputError as error:
             if len(tests) == 1:

@@ -401,6 +401,7 @@ def _numbered(
             i = max(alike, key=lambda i: float(np.abs(values[i]).max()), default=-1)
             places_of += [(i, int(np.abs(values[i]).argmax()))] if alike else []
         return places_of
+    nothing = 1e-9 * max(float(np.abs(value).max()) for value in values)  # round-off of open struts
     for i, value in enumerate(values):
         places = {0, value.size - 1}
         if np.ptp(value) <= 1e-9 * abs(value[0]):
@@ -408,7 +409,7 @@ def _numbered(
         elif force == "moment":
             turns = int(value.argmax()), int(value.argmin())
             places |= {at for at in turns if 2 < at < value.size - 3}
-        places_of += [(i, at) for at in sorted(places) if value[at]]
+        places_of += [(i, at) for at in sorted(places) if abs(value[at]) > nothing]
     return places_of
 
 
@@ -749,14 +750,16 @@ def _part(written: list[tuple[MemberGeometry, int, Any]]) -> None:
     """Move numbers of columns towards their middle, off those that are written already."""
     if not written:
         return
-    written[0][2].figure.draw_without_rendering()
+    written[0][2].axes.apply_aspect()
     taken: list[Any] = []
     for member, at, text in sorted(written, key=lambda each: each[0].upright):
+        box = text.get_window_extent()
         for _ in range(8 if member.upright else 0):
-            if not any(text.get_window_extent().overlaps(other) for other in taken):
+            if not any(map(box.overlaps, taken)):
                 break
             text.xyann = text.xyann + (-3.0 if at else 3.0) * member.axis
-        taken.append(text.get_window_extent())
+            box = text.get_window_extent()
+        taken.append(box)
 
 
 def _short(value: float) -> str:

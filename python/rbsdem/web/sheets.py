@@ -37,7 +37,7 @@ from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.column_result import ColumnResult
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.section.curvature import diagram
-from rbsdem.section.frame import SCOPE_NOTE, Frame, Structure
+from rbsdem.section.frame import Frame, Structure
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.plan import Building
 from rbsdem.section.strength import Code, interaction
@@ -53,7 +53,6 @@ _OF_RULES = {
 #: Members and sections that a report shows; more are in its tables.
 _MOST_MEMBERS, _MOST_SECTIONS = 40, 6
 _LEFT_OUT = (
-    "Strengths are those of the drawings. Left out: torsion and motion across the frame, infills, "
     "the ground, splices that were not named, factors of force-controlled actions, of joints all "
     "but the strut (EN 1998) or limits that were given (ASCE 41). Tested frames were 10 to 20 % "
     "off in their peaks in the median, and a factor of 1.5 in the drift at the peak."
@@ -335,7 +334,8 @@ def of_assessment(
         drawn.append(partial(frames.assessment, part))
         yield Sheet(f"{name}Members", _judged(part), tuple(drawn), part.worst(10))
     yield Sheet("All members", table=assessment.to_pandas(), beside=True)
-    yield Sheet("Assumed", f"{assessment.assumed} {result.scope_note} {_LEFT_OUT}")
+    words = f"{assessment.assumed} {result.scope_note} {_left_out(result.structure)}"
+    yield Sheet("Assumed", words)
 
 
 def _judged(assessment: Assessment) -> str:
@@ -451,8 +451,19 @@ def _of_ida(analysis: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[
     ended = table["status"].value_counts().rename("runs").reset_index()
     yield Sheet("How the runs ended", table=ended)
     yield Sheet("Runs", table=table, beside=True)
-    scope = f"{SCOPE_NOTE} " if isinstance(structure, Frame) else ""
-    yield Sheet("Assumed", f"{scope}{_LEFT_OUT}")
+    scope = f"{structure.scope_note} " if isinstance(structure, Frame) else ""
+    yield Sheet("Assumed", f"{scope}{_left_out(structure)}")
+
+
+def _left_out(structure: Structure) -> str:
+    """Return what neither the model of a structure nor its limits have in them."""
+    parts: list[Any] = [structure]
+    across = "torsion and motion across the frame, "
+    if isinstance(structure, Building):
+        parts, across = [plane.frame for plane in structure.planes], ""
+    infilled = any(getattr(part, "infilled", ()) for part in parts)
+    masonry = "" if infilled else "infills, "
+    return f"Strengths are those of the drawings. Left out: {across}{masonry}{_LEFT_OUT}"
 
 
 def _damped(structure: Structure) -> str:
@@ -463,6 +474,8 @@ def _damped(structure: Structure) -> str:
 
 def _of_structure(structure: Structure) -> Sheet:
     """Return the sheet of what was given of a structure."""
+    if isinstance(structure, Building):
+        return _of_plan(structure)
     if isinstance(structure, LayeredColumn) and structure.drawing is not None:
         (keys,) = (values for name, values in _core.groups(structure._groups()) if name == "column")
         shown = ("height", "axial_load", "mass", "top_mass", "kinematics")
@@ -555,6 +568,8 @@ def _summary(summary: Mapping[str, Any]) -> DataFrame:
     """Return the figures of an analysis, a row for each; what does not apply is left out."""
     rows = []
     for name, value in summary.items():
+        if name == "stable_step" and not value:  # of explicit methods
+            continue
         unit = _unit(name)
         scale, unit = paper(unit)
         text = f"{scale * value:.4g}" if isinstance(value, int | float) else str(value)
