@@ -15,14 +15,14 @@ module rbs_solve_static_curved
    use rbs_base_text, only: to_text
    use rbs_base_tolerances, only: round_off_of_sums
    use rbs_hysteresis_interaction_joints, only: list_lines, put_on_plane
-   use rbs_solve_task, only: task_type
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_rotation
    use rbs_solve_static_curved_search, only: curve_search, find_event, find_point, find_turn, find_works, &
                                              layer_of, move_to, no_progress, work_of_joint
    use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
+   use rbs_solve_task, only: task_type
+   use rbs_structure_column_column, only: column_type
    use rbs_structure_structure, only: finite
    implicit none
    private

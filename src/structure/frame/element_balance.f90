@@ -98,16 +98,10 @@ contains
       real(wp), intent(in) :: k(springs)
       !> On entry the tangent of the last call, if there was one
       type(series_tangent), intent(inout) :: tangent
-      real(wp) :: change
-      integer :: j, spared
+      integer :: spared
 
       if (tangent%is_known) then
-         change = 0.0_wp
-         !$omp simd reduction(max:change)
-         do j = 1, springs
-            change = max(change, abs(tangent%branch(j) - k(j)))
-         end do
-         if (.not. change > 0.0_wp) return
+         if (.not. any(abs(tangent%branch - k) > 0.0_wp)) return
       end if
       tangent%branch = k
       call e%inner_springs(springs, k, tangent%p, tangent%k, tangent%turn)

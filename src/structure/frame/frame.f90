@@ -103,7 +103,7 @@ module rbs_structure_frame_frame
       procedure :: unknown_rates, forces, axial_forces, add_stiffness, add_geometric, rotations, storey_drifts
       procedure :: potential_energy, channels, fill_row, base_force, set_shape, check_loads, is_removed
       procedure :: next_failed_member, remove_member, has_collapsed, unbounded_spring
-      procedure :: mark_columns, top_displacement
+      procedure :: mark_columns
    end type frame_type
 
    interface
@@ -241,18 +241,6 @@ module rbs_structure_frame_frame
    end interface
 
 contains
-
-   !> Displacement of the top along x [m]: of the position, springs have no part in it and are passed over,
-   !> by fours, as `inner_product` adds up.
-   pure real(wp) function top_displacement(self, d) result(x)
-      class(frame_type), intent(in) :: self
-      !> Position, or its change (coordinates)
-      real(wp), intent(in), contiguous :: d(:)
-
-      associate (passed => self%springs - mod(self%springs, 4))
-         x = inner_product(size(d) - passed, self%arm(passed + 1:), d(passed + 1:))
-      end associate
-   end function top_displacement
 
    !> Displacement of a node along x of its plane [m].
    pure real(wp) function along_x(self, node, x) result(moved)
