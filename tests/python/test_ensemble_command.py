@@ -63,8 +63,11 @@ def test_records_and_scales(
     assert float(rows[4]["peak_drift"]) == pytest.approx(expected.measures["peak_drift"][0], 1e-5)
     assert command(monkeypatch, *given) == 0
     assert "6 runs, 6 of them from the store" in capsys.readouterr().out
+    assert command(monkeypatch, "--status", out / "store") == 0
+    alone = capsys.readouterr().out
     assert command(monkeypatch, "--status", out) == 0
     lines = capsys.readouterr().out.splitlines()
+    assert alone.splitlines() == lines
     counts = pandas.read_csv(out / "runs.csv").status.value_counts()
     assert lines[0] == "6 runs: " + ", ".join(f"{n} {status}" for status, n in counts.items())
     assert lines[1].startswith("part 1 of 1: 6 runs, the last written ")

@@ -288,14 +288,15 @@ def _tell_status(context: click.Context, option: click.Parameter, folder: Path |
     del option
     if folder is None:
         return
-    for line in store_status(folder if folder.name == "store" else folder / "store"):
+    inner = folder / "store"  # of --out; else the folder is a store itself
+    for line in store_status(inner if inner.is_dir() else folder):
         click.echo(line)
     context.exit()
 
 
 _status = click.option(
     "--status", type=FOLDER, metavar="DIR", is_eager=True, expose_value=False,
-    callback=_tell_status, help="tell what is done in the folder of --out, and end",
+    callback=_tell_status, help="tell what is done in a folder of --out or store=, and end",
 )  # fmt: skip
 
 
