@@ -144,8 +144,8 @@ contains
                call run_dynamic(structure, case%analysis, plan, history%time, history%loads, at_rest, task, &
                                 error)
             else
-               task%leaps = case%analysis%method == 'newton'
-               call run_static(structure, any(case%loading(:case%loadings)%drive == 'force'), &
+               call run_static(structure, case%analysis%method, &
+                               any(case%loading(:case%loadings)%drive == 'force'), &
                                history%target, task, error, history%axial_load)
             end if
             call progress%finish()

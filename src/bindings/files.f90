@@ -55,6 +55,8 @@ contains
             call sample(history%loads%signal(i), history%time, answer%rows(:, 1 + i))
          end do
       else
+         ! A static method that is not named is not in the statement.
+         if (.not. case%analysis%named) case%analysis%method = ''
          column = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
          answer%rows(:, column) = [1.0_c_double, history%target]
          ! The fifth drive is the axial load.

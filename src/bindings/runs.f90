@@ -149,12 +149,11 @@ contains
          if (run%case%analysis%method == '') run%case%analysis%method = 'static'
          call check_settings(run%case, error)
          if (allocated(error)) return
-         run%task%leaps = run%case%analysis%method == 'newton'
          target => request%array('target')
          run%recorder%corners = request%wants('corners')
          run%recorder%expected = kept_rows(size(target), run%case%output%every)
-         call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
-                         request%array('axial_load'))
+         call run_static(run%structure, run%case%analysis%method, request%wants('by_force'), target, &
+                         run%task, error, request%array('axial_load'))
       end subroutine run_cyclic
 
       !> Run a response in time under the signals that are given.

@@ -8,6 +8,7 @@ from test_grids import CASE
 import rbsdem
 from rbsdem import plot
 from rbsdem.codes import DesignSpectrum, assess, check_target, judge, target
+from rbsdem.many.judgement import response
 
 ASKED = """\
 &target method = 'en_1998', spectrum = 'en_1998', ag = 0.15, soil = 'C' /
@@ -45,6 +46,18 @@ def test_a_case_asks_for_what_the_functions_do(house):
     # What it asks for is part of the case.
     house.write_text(case.to_namelist())
     assert rbsdem.read_case(house) == case
+
+
+@pytest.mark.parametrize("method", [None, "static", "newton"])
+def test_a_method_that_the_file_names_is_that_of_its_push_over(house, monkeypatch, method):
+    if method:
+        house.write_text(HOUSE + f"&analysis method = '{method}' /\n")
+    monkeypatch.setattr("rbsdem.many.judgement.pushover", lambda _, **how: how["method"])
+    case = rbsdem.read_case(house)
+    assert response(case) == method
+    assert case.method == (method or "static")
+    house.write_text(case.to_namelist())
+    assert response(rbsdem.read_case(house)) == method
 
 
 @pytest.mark.usefixtures("without_figures")

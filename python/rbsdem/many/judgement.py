@@ -21,6 +21,7 @@ from rbsdem.run.building_result import BuildingResult
 from rbsdem.run.case import Case
 from rbsdem.run.frame_result import FrameResult
 from rbsdem.run.response import pushover
+from rbsdem.run.solver import PathMethod
 from rbsdem.section.frame import Frame
 
 #: Keys of a spectrum, by its code.
@@ -140,10 +141,9 @@ def response(case: Case, **settings: Any) -> FrameResult | BuildingResult:
     result: Any
     if not case.dynamic and path is not None:
         far = float(path[np.abs(path).argmax()])
-        # A case file need not name the method: the default of a push-over is its structure's.
-        result = pushover(
-            case.column, displacement=far, method="newton" if case.method == "newton" else None
-        )
+        # Where the file names no method, that of a push-over is its structure's.
+        method = cast(PathMethod, case.method) if case.names_method else None
+        result = pushover(case.column, displacement=far, method=method)
     else:
         result = case.run(**settings)
     return cast(FrameResult | BuildingResult, result)

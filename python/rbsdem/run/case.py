@@ -57,6 +57,8 @@ class Case:
         The structure.
     method : str
         "static" or "newton", or a method of `time_history`.
+    names_method : bool
+        Whether the file names it, or it follows from the loading.
     time : ndarray, shape (m,)
         Times of all loadings [s]; in a static analysis the numbers of the points. Empty for a case
         without a loading.
@@ -96,6 +98,7 @@ class Case:
     limit: list[dict[str, Any]] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
     ground_acceleration_y: Array | None = None
+    names_method: bool = field(default=True, compare=False)
 
     @property
     def dynamic(self) -> bool:
@@ -183,7 +186,8 @@ class Case:
         output = {name: settings.pop(name, None) for name in ("every", "openings", "motion")}
         if "initial" in settings:
             settings["initial"] = _core.Text(os.fspath(settings["initial"]))
-        parts.append(_core.group("analysis", {"method": self.method} | settings))
+        method = self.method if self.names_method else None
+        parts.append(_core.group("analysis", {"method": method} | settings))
         for name, given in (("target", self.target), ("records", self.records)):
             parts.append(_core.group(name, _texts(given)))
         for name, several in (("assess", self.assess), ("limit", self.limit)):
@@ -195,7 +199,7 @@ class Case:
         """Return whether another case has the same column, histories and settings, bit for bit."""
         if not isinstance(other, Case):
             return NotImplemented
-        names = [field.name for field in fields(self)]
+        names = [field.name for field in fields(self) if field.compare]
         return all(same(getattr(self, name), getattr(other, name)) for name in names)
 
     __hash__ = None  # type: ignore[assignment]
@@ -293,8 +297,9 @@ def _case_of(
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
     }
-    title, method = groups.get("case", {}).get("title", ""), settings.pop("method")
-    return Case(title, structure, method, time, **loads, settings=settings, **more)
+    title, method = groups.get("case", {}).get("title", ""), settings.pop("method", None)
+    more["names_method"] = method is not None
+    return Case(title, structure, method or "static", time, **loads, settings=settings, **more)
 
 
 def _texts(values: dict[str, Any]) -> dict[str, Any]:

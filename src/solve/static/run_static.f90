@@ -22,8 +22,10 @@ contains
 
    !> Static path through displacements of the top or lateral forces: a curve where rotations are exact or the
    !> axial load at the top of a column varies, else a chain of straight lines.
-   subroutine run_static(structure, by_force, target, task, error, axial_load)
+   subroutine run_static(structure, method, by_force, target, task, error, axial_load)
       class(structure_type), intent(in), target :: structure
+      !> 'newton' for a path in leaps, else from event to event
+      character(len=*), intent(in) :: method
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
@@ -58,8 +60,8 @@ contains
          end if
       end if
       curves = varies .or. structure%kinematics == finite
-      if (task%leaps .and. (curves .or. structure%in_series)) then
-         task%leaps = .false.
+      task%leaps = method == 'newton' .and. .not. (curves .or. structure%in_series)
+      if (method == 'newton' .and. .not. task%leaps) then
          task%summary%reason = "newton is for frames, and columns with 'pdelta', under constant axial loads"
       end if
       if (curves) then

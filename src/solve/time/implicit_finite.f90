@@ -71,7 +71,7 @@ module rbs_solve_time_implicit_finite
       !> Work of the springs up to the step (unknowns)
       real(wp), allocatable, private :: work(:)
    contains
-      procedure :: prepare, take_step, correct, try, work_of_residual, is_round_off, serialize
+      procedure :: prepare, take_step, correct, try, work_of_residual, serialize
    end type finite_stepper
 
 contains
@@ -503,15 +503,6 @@ contains
 
       work = sum(self%r*self%dx)
    end function work_of_residual
-
-   !> While bodies turn, round-off cannot be separated from the residual: the acceptable residual decides.
-   logical function is_round_off(self, state)
-      class(finite_stepper), intent(in) :: self
-      type(state_type), intent(in) :: state
-
-      ! This is never true, but uses the arguments that the interface prescribes.
-      is_round_off = self%acceptable < 0.0_wp .and. state%diverged
-   end function is_round_off
 
    !> The end of the step becomes the state, the springs excepted; works of loads and damping in it are added.
    subroutine finish_step(self, state)
