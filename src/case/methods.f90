@@ -50,8 +50,8 @@ module rbs_case_methods
    !> tolerance, and the springs would follow this false motion.
    type(method_type), parameter :: methods(8) = [ &
       method_type('static', in_time=.false., dt=.false.), &
-      method_type('newton', in_time=.false., dt=.false., usual_error=1.0e-5_wp, largest_error=1.0e-2_wp, &
-                  responses=592), &
+      method_type('newton', in_time=.false., dt=.false., usual_error=1.0e-5_wp, largest_error=6.0e-4_wp, &
+                  responses=1110), &
       method_type('auto', tolerance=.true.), &
       method_type('rk4', order=4, explicit=.true., events=.true., allow_unstable=.true., &
                   limit_share=0.2_wp, usual_error=1.0e-4_wp, largest_error=3.0e-3_wp, &

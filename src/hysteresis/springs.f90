@@ -55,6 +55,11 @@ module rbs_hysteresis_springs
       type(spring_rules), pointer :: rules => null()
       type(spring_slot), allocatable :: slot(:)
       type(journal_type) :: journal
+      !> Springs that `retry` takes to a turning point first, the first `turned` elements, and these points
+      !> (count) [m or rad]
+      integer :: turned = 0
+      integer, allocatable :: turning(:)
+      real(wp), allocatable :: turning_point(:)
       !> Layered joints among the springs, and whether their axial loads vary along the path: then they follow
       !> straight paths in rotation and axial load, and are on planes where other springs are on lines, see
       !> `rbs_hysteresis_interaction_joints`
@@ -70,7 +75,7 @@ module rbs_hysteresis_springs
    contains
       procedure :: create, restart, force, forces, find_forces, find_resistance, end_toward, advance_to
       procedure :: advance_on_branch, leave, arrive, load_to, line_of, set_stiffness, put, release, is_removed
-      procedure :: mark, restore, retry, forget_mark, serialize, move_all, carry_to, stay_on_lines
+      procedure :: mark, restore, retry, turn_at, forget_mark, serialize, move_all, carry_to, stay_on_lines
       procedure :: crushed_joint, fit_planes
    end type spring_array
 
@@ -405,11 +410,26 @@ contains
       call self%journal%start(self%d, self%work, self%events)
    end subroutine mark
 
+   !> From now on `retry` takes a spring to a turning point first, and from there to its new deformation.
+   subroutine turn_at(self, i, d)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      !> The turning point [m or rad]
+      real(wp), intent(in) :: d
+
+      if (.not. allocated(self%turning)) allocate (self%turning(self%count), self%turning_point(self%count))
+      self%turned = self%turned + 1
+      self%turning(self%turned) = i
+      self%turning_point(self%turned) = d
+      self%journal%direction(i) = 0
+   end subroutine turn_at
+
    !> Drop the mark.
    subroutine forget_mark(self)
       class(spring_array), intent(inout) :: self
 
       call self%journal%forget()
+      self%turned = 0
    end subroutine forget_mark
 
    !> Return to the marked state, to the last bit. The mark stays.
@@ -426,6 +446,7 @@ contains
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
+      integer :: j
 
       if (self%axial_load_varies) then
          ! The ways of joints depend on their axial loads too, so no branch is entered again.
@@ -434,7 +455,14 @@ contains
          return
       end if
       call go_back(self, d)
+      do j = 1, self%turned
+         call self%advance_to(self%turning(j), self%turning_point(j))
+         self%journal%direction(self%turning(j)) = 0
+      end do
       call leave_lines(self, d, again=.true.)
+      do j = 1, self%turned
+         self%journal%direction(self%turning(j)) = 0
+      end do
       if (self%stuck) return
       call advance_all(self, d)
       call sum_up_joints(self)
@@ -464,7 +492,7 @@ contains
          end if
          do i = first, last
             enters = .false.
-            if (again) enters = self%journal%is_kept(i)
+            if (again) enters = self%journal%is_kept(i) .and. self%journal%direction(i) /= 0
             if (enters) then
                call enter_again(self, i)
             else if (d(i) <= self%upper(i) .and. d(i) >= self%lower(i)) then

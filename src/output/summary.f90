@@ -56,6 +56,9 @@ module rbs_output_summary
       !> held [J]
       integer :: snap_backs = 0
       real(wp) :: released = 0.0_wp
+      !> What springs that turn within leaps of a static path have changed, the sum, as a share of the largest
+      !> force, or of the largest displacement under a driven force; below zero without leaps
+      real(wp) :: leap_error = -1.0_wp
       !> Whether the analysis ended where the user's criterion of collapse was met
       logical :: collapsed = .false.
       !> Whether it was stopped from outside before its end
@@ -148,6 +151,7 @@ contains
               figure_type('peak_rotation', 'rad', self%peak_rotation), &
               figure_type('peak_floor_acceleration', 'm/s2', self%peak_floor_acceleration, &
                           self%peak_floor_acceleration >= 0.0_wp), &
+              figure_type('leap_error', '', self%leap_error, self%leap_error >= 0.0_wp), &
               figure_type('cut_steps', '', real(self%cut_steps, wp)), &
               figure_type('snaps', '', real(self%snaps, wp), snapped), &
               figure_type('snap_energy', 'J', self%energy%snaps, snapped), &

@@ -192,8 +192,8 @@ class ErrorEstimate:
     method : str
         The method that was used.
     measured : float
-        The largest of `Result.refined_error`, where that run is short; NaN where it is not, and for
-        a static path.
+        The largest of `Result.refined_error`, where that run is short; of leaps the sum of what
+        springs that turn in them may change, "leap_error" of the summary. NaN for other runs.
     usual, largest : float
         Error of the method at its own step or tolerance, relative to the peaks: median and largest
         of the responses of ``studies/error_classes.py``, or of the frames in ``docs/plans.md`` for
@@ -225,9 +225,10 @@ class ErrorEstimate:
         )
         if math.isnan(self.measured):
             return f"{self.method}: errors over the peaks: {tried}; refined_error() measures it"
-        return (
-            f"{self.method}: error about {self.measured:.1g} of the peaks, by a finer run ({tried})"
-        )
+        how = f"at most about {self.measured:.1g} of the peaks, by the springs that turn in leaps"
+        if self.method != "newton":
+            how = f"about {self.measured:.1g} of the peaks, by a finer run"
+        return f"{self.method}: error {how} ({tried})"
 
 
 def refined_error(result: Any) -> Errors:

@@ -108,13 +108,13 @@ def cyclic(
     method : {"static", "newton"}, optional
         "static" goes from event to event (the default), "newton" in leaps from point to point by
         Newton's method, which solves large drawn frames in a small part of the time. In a leap
-        every spring follows its rule exactly, in one direction. A leap is halved if springs that
-        reverse within it may change the force by 1e-4 of the largest force, or if the balance of
-        work is not met; where a 64th of the leap still fails, that part goes from event to event.
-        Errors are mostly below 1e-4 of the peak force
-        (``studies/random_frames.py --kind leaps``); drops of the force below 2 % of it may be
-        passed over. Columns with "finite", under axial loads that vary, or with "small" go from
-        event to event all the same.
+        every spring follows its rule exactly, in one direction or by one turning point. A leap is
+        halved if springs that turn in it may change the force by 1e-4 of the largest force, or if
+        the balance of work is not met; where a 64th of the leap still fails, or it has few events,
+        that part goes from event to event. `error_estimate` is what the springs that turn may have
+        changed in all leaps, which is more than the error (``studies/random_frames.py --kind
+        leaps``); drops of the force below 2 % of it may be passed over. Columns with "finite",
+        under axial loads that vary, or with "small" go from event to event all the same.
     max_seconds : float, optional
         A path that takes longer [s] ends there: `summary["status"]` is "stopped", and its rows are
         those up to there.

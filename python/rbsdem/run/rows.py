@@ -150,13 +150,14 @@ class Result(_Channels):
         time of a lateral force, if there is one), peak_base_shear [N], peak_rotation (largest
         absolute rotation of a body [rad]), energies at the end [J], energy_residual [J] and
         relative_energy_residual (the largest), cut_steps (steps cut at an event, for accuracy, or
-        because they did not converge); where members of a frame jumped to another equilibrium,
-        snaps (in how many steps), snap_energy (lost in them [J]), snap_member and snap_time [s]
-        (number of the one that lost most, and when); where a member carries its load no more,
-        fallen_member; where a static path snaps back, snap_backs and released_energy (by a test
-        that holds the top [J]). Whatever rows are kept, they are those of all points or steps, the
-        residual that of all points or times of the loading; "rk45" and located events resolve peaks
-        within a step.
+        because they did not converge); of leaps leap_error (what springs that turn in them may
+        change, the sum, as a share of the largest force); where members of a frame jumped to
+        another equilibrium, snaps (in how many steps), snap_energy (lost in them [J]), snap_member
+        and snap_time [s] (number of the one that lost most, and when); where a member carries its
+        load no more, fallen_member; where a static path snaps back, snap_backs and released_energy
+        (by a test that holds the top [J]). Whatever rows are kept, they are those of all points or
+        steps, the residual that of all points or times of the loading; "rk45" and located events
+        resolve peaks within a step.
     structure : Column or Frame
         The structure.
     call : dict
@@ -303,11 +304,11 @@ class Result(_Channels):
 
     @property
     def error_estimate(self) -> ErrorEstimate:
-        """Estimate of the error: measured where that takes about 0.1 s, else by its method."""
+        """Estimate of the error: measured in leaps or in about 0.1 s, else by its method."""
         about = self.summary
         method = METHODS[about["method"]]
         short = self.dynamic and about["steps"] * self.structure.n <= _SHORT
-        measured = math.nan
+        measured = float(about.get("leap_error", math.nan))
         if short and about["status"] == "completed":
             with contextlib.suppress(SolveError):
                 measured = self.refined_error().largest

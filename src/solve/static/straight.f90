@@ -36,9 +36,11 @@ module rbs_solve_static_straight
    !> Lines without progress toward a target after which a path is given up: some, and some for each spring.
    integer, parameter :: most_idle = 1000, most_idle_per_spring = 10
 
-   !> Shortest leap, as a share of the way to a target, and most trials of one. Shares of the largest force by
-   !> whose work and by which a leap may be wrong.
+   !> Shortest leap, as a share of the way to a target, and most trials of one. Shares of the largest force,
+   !> or displacement, by whose work a leap may be wrong, and which turns of springs may change in it.
    real(wp), parameter :: shortest_leap = 1.0_wp/64.0_wp, missing_work = 1.0e-2_wp, missing_turns = 1.0e-4_wp
+   !> A change below this share of the largest force is round-off.
+   real(wp), parameter :: of_round_off = 1.0e-12_wp
    integer, parameter :: most_trials = 12
 
    !> The state of a path and the line it is on.
@@ -55,6 +57,8 @@ module rbs_solve_static_straight
       integer :: ends = 0
       !> Largest value of the control; the way to the present target, and the largest share of it so far
       real(wp) :: farthest = 0.0_wp, way = 0.0_wp, share = 0.0_wp
+      !> What turns of springs have changed in leaps so far, the sum [N, m under a driven force]
+      real(wp) :: turned = 0.0_wp
       !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; motion
       !> of the load since then [m]
       logical :: in_loop = .false.
@@ -92,6 +96,9 @@ contains
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return
       call path%follow(target, task, error)
+      associate (peak => merge(task%summary%peak_displacement, task%summary%peak_force, by_force))
+         if (task%leaps) task%summary%leap_error = path%turned/max(abs(peak), tiny(1.0_wp))
+      end associate
       if (allocated(error) .or. task%summary%has_fallen()) return
       if (task%keeps_end) call end_path(path, .false., task%after)
       if (.not. (present(checkpoint) .and. present(springs))) return
@@ -100,7 +107,7 @@ contains
    end subroutine trace_straight
 
    !> Go on to a target: by leaps where the task asks for them, else from event to event. A leap that fails is
-   !> halved; where it cannot be shorter the events are followed.
+   !> halved; where it cannot be shorter, or has few events, these are followed.
    subroutine advance(self, target, error)
       class(straight_path), intent(inout) :: self
       !> Displacement [m] or force [N]
@@ -108,7 +115,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Way to the target, length of a leap (both with the sign of their direction), and where it leads to
       real(wp) :: whole, length, next
-      logical :: arrived
+      !> Whether the end was reached, a shorter leap is worth a trial, a member fails before `next`
+      logical :: arrived, halves, fails
 
       self%share = 0.0_wp
       self%way = target - self%control_begin
@@ -118,6 +126,7 @@ contains
       end if
       length = target - self%control
       whole = length
+      fails = .false.
       do
          if (.not. abs(target - self%control) > 0.0_wp) return
          if (self%task%stops()) return
@@ -126,8 +135,8 @@ contains
          ! Corners behind a leap do not bind its springs: they may turn back.
          self%arrived = 0
          self%direction = 0
-         call leap(self, next, arrived)
-         if (.not. arrived .and. abs(length) > shortest_leap*abs(whole)) then
+         call leap(self, next, arrived, halves, fails)
+         if (.not. arrived .and. halves .and. abs(length) > shortest_leap*abs(whole)) then
             length = 0.5_wp*length
             cycle
          end if
@@ -135,7 +144,9 @@ contains
             call follow_events(self, next, error)
             if (allocated(error) .or. self%loses_load() .or. self%task%summary%stopped) return
          end if
-         length = 2.0_wp*length
+         ! What is left of the way to where a member fails is halved.
+         fails = fails .and. arrived
+         length = merge(0.5_wp, 2.0_wp, fails)*length
          if (.not. abs(target - self%control) > 0.0_wp) return
          self%share = max(self%share, (self%control - self%control_begin)/self%way)
          call self%record_corner(self%share)
@@ -143,30 +154,38 @@ contains
    end subroutine advance
 
    !> Go to a displacement or a force in one leap, by Newton's method. Every spring follows its rule on the
-   !> way, in one direction: the end is that of the path if no spring turns in between. Nothing has happened
-   !> where no equilibrium is found, where it is not stable, where work or the way of springs that have turned
-   !> is missing, or a member fails.
-   subroutine leap(self, next, arrived)
+   !> way, in one direction, or by one turning point. Nothing has happened where no equilibrium is found,
+   !> where it is not stable, where work is missing or turns may change the end too much, or a member fails;
+   !> and where springs turn or begin to soften in a leap with no more events than it may have trials: these
+   !> events cost no more, and in their order each spring has its turn.
+   subroutine leap(self, next, arrived, halves, fails)
       class(straight_path), intent(inout) :: self
       !> Driven quantity at the end of the leap [m or N]
       real(wp), intent(in) :: next
-      !> Whether the end is reached; else nothing has happened
-      logical, intent(out) :: arrived
+      !> Whether the end is reached; else nothing has happened, and whether a shorter leap is worth a trial
+      logical, intent(out) :: arrived, halves
+      !> Whether a leap in this way has met a member that fails, or a joint that loses its load
+      logical, intent(inout) :: fails
       !> Rates at the start; first correction of the position and of the force
       real(wp) :: first(size(self%rate)), correction(size(self%rate)), force_correction, slope
       !> Change of the driven quantity; displacement, force and energy at the start; motion and work of the
-      !> load
-      real(wp) :: change, displacement, force, energy, moved, work, largest
+      !> load; largest force, or displacement, so far, and what turns change of it
+      real(wp) :: change, displacement, force, energy, moved, work, largest, turned
+      !> Springs that soften at the start
+      logical :: softens(self%moving)
 
       change = next - self%control
       displacement = self%displacement
       force = self%force
       energy = stored()
+      halves = .true.
+      turned = 0.0_wp
       call self%springs%mark()
       call self%solve_line(1, arrived)
       associate (line => self%equilibrium, springs => self%springs)
          if (arrived) then
             first = self%rate
+            softens = springs%k(:self%moving) < 0.0_wp
             ! Work is the integral of the force over the displacement; under a driven force, by parts, less
             ! that of the displacement over the force. The slopes are those of the integrand.
             slope = merge(-line%displacement_rate, line%force_rate, self%by_force)
@@ -176,16 +195,31 @@ contains
             call settle(self, self%by_force, 0.0_wp, most_trials, correction, force_correction, arrived)
          end if
          if (arrived) then
+            halves = springs%events - springs%journal%events > most_trials
+            call find_turns(self, first, change, turned)
+            if (.not. halves) arrived = springs%turned == 0 .and. &
+                                        .not. any(springs%k(:self%moving) < 0.0_wp .and. .not. softens)
+         end if
+         if (arrived .and. springs%turned > 0) then
+            largest = maxval(abs([force, self%force, self%task%summary%peak_force]))
+            if (self%by_force) largest = maxval(abs([displacement, self%task%summary%peak_displacement, &
+                                                     self%structure%top_displacement(springs%d)]))
+            arrived = turned <= missing_turns*largest
+            if (arrived) call take_turns(self, largest, arrived)
+         end if
+         if (arrived) then
             if (self%by_force) self%displacement = self%structure%top_displacement(springs%d)
             moved = self%displacement - displacement + line%dead_load_work_rate*change
             slope = slope - merge(-line%displacement_rate, line%force_rate, self%by_force)
             ! The trapezoid, with the slopes at its ends
             work = 0.5_wp*(force + self%force)*moved + slope*change**2/12.0_wp
-            largest = max(abs(force), abs(self%force), self%task%summary%peak_force)
+            largest = maxval(abs([force, self%force, self%task%summary%peak_force]))
             arrived = (line%is_stable .or. self%by_force) .and. &
-                      abs(work - (stored() - energy)) <= missing_work*abs(largest*moved) .and. &
-                      force_of_turns(self, first, change) <= missing_turns*largest .and. &
-                      .not. self%loses_load() .and. self%structure%next_failed_member(springs) == 0
+                      abs(work - (stored() - energy)) <= missing_work*abs(largest*moved)
+            if (self%loses_load() .or. self%structure%next_failed_member(springs) > 0) then
+               arrived = .false.
+               fails = .true.
+            end if
          end if
          if (.not. arrived) then
             call springs%restore()
@@ -196,6 +230,7 @@ contains
       end associate
       if (.not. arrived) return
       self%work = self%work + work
+      self%turned = self%turned + turned
       self%control = next
       self%last_direction = merge(1, -1, change > 0.0_wp)
       self%farthest = max(self%farthest, abs(next))
@@ -210,30 +245,68 @@ contains
 
    end subroutine leap
 
-   !> Force by which a leap may be wrong as springs have turned in it: springs whose rates at start and end
-   !> are opposite have gone some way and back [N].
-   pure real(wp) function force_of_turns(self, first, change) result(force)
-      class(straight_path), intent(in) :: self
+   !> Find the springs that have turned in a leap, their rates at its start and its end being opposite. Their
+   !> turning points are those of rates that change once, from these to those. A spring that comes back on the
+   !> line on which it has turned is where it is.
+   subroutine find_turns(self, first, change, turned)
+      class(straight_path), intent(inout) :: self
       !> Rates at the start (coordinates)
       real(wp), intent(in) :: first(:)
       !> Change of the driven quantity in the leap [m or N]
       real(wp), intent(in) :: change
-      real(wp) :: share
+      !> Force, or displacement under a driven force, that the ways there or back cost, the shorter ones, if
+      !> the springs had their initial stiffness [N or m]
+      real(wp), intent(out) :: turned
+      !> Share of the leap before the turn, and the turning point [m or rad]
+      real(wp) :: share, point
       integer :: i
 
-      force = 0.0_wp
+      turned = 0.0_wp
       associate (springs => self%springs, rate => self%rate)
          do i = 1, self%moving
             if (first(i)*rate(i) >= 0.0_wp) cycle
-            ! Share of the leap before the turn, if the rates change there alone.
             share = ((springs%d(i) - springs%journal%d(i))/change - rate(i))/(first(i) - rate(i))
-            share = min(max(share, 0.0_wp), 1.0_wp)
-            ! Stiffness that the turn would have given back, times the way there or back, the shorter one
-            force = force + abs((self%structure%initial_stiffness(i) - springs%k(i))*change*rate(i))* &
-                    min(abs(first(i))*share, abs(rate(i))*(1.0_wp - share))
+            if (share <= 0.0_wp .or. share >= 1.0_wp) cycle
+            point = springs%journal%d(i) + first(i)*share*change
+            if (springs%unload_on_reversal(i) == 0 .and. point >= springs%lower(i) .and. &
+                point <= springs%upper(i)) cycle
+            call springs%turn_at(i, point)
+            turned = turned + self%structure%initial_stiffness(i)*abs(change*rate(i))* &
+                     min(abs(first(i))*share, abs(rate(i))*(1.0_wp - share))
          end do
       end associate
-   end function force_of_turns
+   end subroutine find_turns
+
+   !> Springs that have turned in a leap go by their turning points, and all settle once more.
+   subroutine take_turns(self, largest, arrived)
+      class(straight_path), intent(inout) :: self
+      !> Largest force so far, displacement under a driven force [N or m]
+      real(wp), intent(in) :: largest
+      !> Whether equilibrium was found
+      logical, intent(out) :: arrived
+      real(wp) :: q(size(self%rate)), correction(size(self%rate)), force_correction
+      !> Forces of the springs that turn, before
+      real(wp) :: force(self%springs%turned)
+      !> What the turns have changed of the force, or the displacement [N or m]
+      real(wp) :: changed
+      integer :: j
+
+      q = self%springs%d
+      force = [(self%springs%force(self%springs%turning(j)), j=1, self%springs%turned)]
+      call self%springs%retry(q)
+      arrived = .not. self%springs%stuck
+      changed = 0.0_wp
+      do j = 1, size(force)
+         associate (i => self%springs%turning(j))
+            changed = changed + abs((self%springs%force(i) - force(j))*self%rate(i))
+         end associate
+      end do
+      ! Where it is round-off, the equilibrium that was found stays.
+      if (.not. arrived .or. changed <= of_round_off*largest) return
+      call self%find_balance(self%by_force, correction, force_correction, arrived)
+      if (.not. arrived) return
+      call settle(self, self%by_force, 0.0_wp, most_trials, correction, force_correction, arrived)
+   end subroutine take_turns
 
    !> Go on to a target from event to event.
    subroutine follow_events(self, target, error)
