@@ -156,3 +156,13 @@ def test_columns_say_where_they_go_by_events():
         rbsdem.cyclic(made, displacement=[0.01], method="rk4")
     with pytest.raises(rbsdem.InputError, match="method = 'newton' takes no time; call cyclic"):
         rbsdem.time_history(made, [0.0, 1.0], force=[0.0, 1.0], method="newton")
+
+
+def test_leaps_know_what_was_before_a_cut_and_no_side(house):
+    """The largest force so far decides what a leap may miss: over a cut, and without a sign."""
+    to = 0.01 * house.height * np.array([-1.0, 1.0, -1.53, 0.7, -2.0, 0.0])
+    whole = leap(house, to)
+    np.testing.assert_allclose(leap(house, -to).force, -whole.force, atol=1e-9 * whole.force.max())
+    for at in range(1, to.size):
+        rest = leap(house, to[at:], initial=leap(house, to[:at]))
+        assert rest.force.tolist() == whole.force[at:].tolist()

@@ -59,6 +59,8 @@ module rbs_solve_static_straight
       real(wp) :: farthest = 0.0_wp, way = 0.0_wp, share = 0.0_wp
       !> What turns of springs have changed in leaps so far, the sum [N, m under a driven force]
       real(wp) :: turned = 0.0_wp
+      !> Largest force [N] and displacement [m] at the ends of leaps so far
+      real(wp) :: largest(2) = 0.0_wp
       !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; motion
       !> of the load since then [m]
       logical :: in_loop = .false.
@@ -201,8 +203,8 @@ contains
                                         .not. any(springs%k(:self%moving) < 0.0_wp .and. .not. softens)
          end if
          if (arrived .and. springs%turned > 0) then
-            largest = maxval(abs([force, self%force, self%task%summary%peak_force]))
-            if (self%by_force) largest = maxval(abs([displacement, self%task%summary%peak_displacement, &
+            largest = max(self%largest(1), abs(force), abs(self%force))
+            if (self%by_force) largest = maxval(abs([displacement, self%largest(2), &
                                                      self%structure%top_displacement(springs%d)]))
             arrived = turned <= missing_turns*largest
             if (arrived) call take_turns(self, largest, arrived)
@@ -213,7 +215,7 @@ contains
             slope = slope - merge(-line%displacement_rate, line%force_rate, self%by_force)
             ! The trapezoid, with the slopes at its ends
             work = 0.5_wp*(force + self%force)*moved + slope*change**2/12.0_wp
-            largest = maxval(abs([force, self%force, self%task%summary%peak_force]))
+            largest = max(self%largest(1), abs(force), abs(self%force))
             arrived = (line%is_stable .or. self%by_force) .and. &
                       abs(work - (stored() - energy)) <= missing_work*abs(largest*moved)
             if (self%loses_load() .or. self%structure%next_failed_member(springs) > 0) then
@@ -234,6 +236,7 @@ contains
       self%control = next
       self%last_direction = merge(1, -1, change > 0.0_wp)
       self%farthest = max(self%farthest, abs(next))
+      self%largest = max(self%largest, abs([force, displacement]), abs([self%force, self%displacement]))
 
    contains
 
@@ -629,6 +632,7 @@ contains
 
       call serialize_path(self, stream)
       call stream%items(self%start, self%force_start, self%displacement_start, self%finish)
+      call stream%item(self%largest)
       call stream%item(self%q)
       call stream%item(self%ends)
       call self%equilibrium%serialize(stream)
