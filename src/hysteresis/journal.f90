@@ -9,17 +9,23 @@ module rbs_hysteresis_journal
 
    public :: journal_type, save_memory, return_memory
 
+   !> Springs in a row that are counted together.
+   integer, parameter, public :: block_length = 16
+
    type :: journal_type
-      !> Whether changes are being saved
-      logical :: open = .false.
-      !> Deformations with the coordinates behind them, and works (count) at the start [m or rad, J]
+      !> Whether changes are being saved, and whether all springs are, else only those that have changed their
+      !> branches
+      logical :: open = .false., whole = .false.
+      !> Deformations with the coordinates behind them, and works (count) at the start, of the springs that
+      !> are saved [m or rad, J]
       real(wp), allocatable :: d(:), work(:)
       !> Number of branches left at the start; number of springs that have changed their branches since, and
       !> which (changed)
       integer :: events = 0, changed = 0
       integer, allocatable :: spring(:)
-      !> Whether each spring is among them (count)
+      !> Whether each spring is among them (count), and how many of each block are (blocks)
       logical, allocatable :: is_kept(:)
+      integer, allocatable :: in_block(:)
       !> The branches that they had (changed)
       type(segment), allocatable :: line(:)
       !> How those that are kept have changed since, in one move: the direction, 0 if there were several
@@ -28,55 +34,88 @@ module rbs_hysteresis_journal
       integer, allocatable :: direction(:), branches(:)
       real(wp), allocatable :: beyond(:), d_entered(:), work_entered(:)
    contains
-      procedure :: start, keep, leave_branch, enter_branch, passes_again, give_back, forget
+      procedure :: start, save_all, keep, leave_branch, enter_branch, passes_again, give_back, forget
    end type journal_type
 
 contains
 
-   !> Start to save changes.
-   subroutine start(self, d, work, events)
+   !> Start to save the springs that change their branches.
+   subroutine start(self, coordinates, springs, events)
       class(journal_type), intent(inout) :: self
-      !> Present deformations and works (count)
-      real(wp), intent(in), contiguous :: d(:), work(:)
-      !> Number of branches left so far
-      integer, intent(in) :: events
-      integer :: i, n
+      !> Numbers of coordinates and of springs, and of branches left so far
+      integer, intent(in) :: coordinates, springs, events
 
-      n = size(work)
       if (.not. allocated(self%is_kept)) then
-         allocate (self%is_kept(n), source=.false.)
-         allocate (self%spring(n), self%line(n), self%d(size(d)), self%work(n))
-         allocate (self%direction(n), self%branches(n), self%beyond(n), self%d_entered(n), &
-                   self%work_entered(n))
+         allocate (self%is_kept(springs), source=.false.)
+         allocate (self%in_block((springs - 1)/block_length + 1), source=0)
+         allocate (self%spring(springs), self%line(springs), self%d(coordinates), self%work(springs))
+         allocate (self%direction(springs), self%branches(springs), self%beyond(springs), &
+                   self%d_entered(springs), self%work_entered(springs))
       end if
       if (self%changed > 0) call self%forget()
       self%open = .true.
-      do i = 1, size(d)
-         self%d(i) = d(i)
-      end do
-      do i = 1, n
-         self%work(i) = work(i)
-      end do
+      self%whole = .false.
       self%events = events
    end subroutine start
 
+   !> Save the deformations and works of the springs that have not been saved, as all are about to move.
+   subroutine save_all(self, d, work)
+      class(journal_type), intent(inout) :: self
+      !> Present deformations with the coordinates behind them, and works (count)
+      real(wp), intent(in), contiguous :: d(:), work(:)
+      !> What has been saved already, in the order of the changes
+      real(wp) :: saved(2, self%changed)
+      integer :: i, j
+
+      do j = 1, self%changed
+         saved(:, j) = [self%d(self%spring(j)), self%work(self%spring(j))]
+      end do
+      self%d(:) = d
+      self%work(:) = work
+      do j = 1, self%changed
+         i = self%spring(j)
+         self%d(i) = saved(1, j)
+         self%work(i) = saved(2, j)
+      end do
+      self%whole = .true.
+   end subroutine save_all
+
    !> Save a spring before it changes its branch for the first time; a layered joint is marked.
-   subroutine keep(self, i, line, slot)
+   subroutine keep(self, i, d, work, line, slot)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
-      !> Present branch of spring i; in its slot the memory is copied
+      !> Deformation [m or rad] and work [J] of spring i
+      real(wp), intent(in) :: d, work
+      !> Its present branch; in its slot the memory is copied
       type(segment), intent(in) :: line
       type(spring_slot), intent(inout) :: slot
 
       if (self%is_kept(i)) return
-      self%is_kept(i) = .true.
+      call count_in(self, i, 1)
       self%changed = self%changed + 1
       self%spring(self%changed) = i
       self%line(self%changed) = line
+      if (.not. self%whole) then
+         self%d(i) = d
+         self%work(i) = work
+      end if
       self%direction(i) = 0
       self%branches(i) = 0
       call save_memory(slot)
    end subroutine keep
+
+   !> Count spring i among those that are kept, or no more.
+   pure subroutine count_in(self, i, change)
+      type(journal_type), intent(inout) :: self
+      integer, intent(in) :: i
+      !> +1 or -1
+      integer, intent(in) :: change
+
+      self%is_kept(i) = change > 0
+      associate (number => self%in_block((i - 1)/block_length + 1))
+         number = number + change
+      end associate
+   end subroutine count_in
 
    !> Spring i leaves a branch by its end in a direction, +1 or -1.
    pure subroutine leave_branch(self, i, direction, last)
@@ -124,7 +163,7 @@ contains
       integer, intent(in) :: i
       type(spring_slot), intent(inout) :: slot
 
-      self%is_kept(i) = .false.
+      call count_in(self, i, -1)
       call return_memory(slot)
    end subroutine give_back
 
@@ -165,9 +204,8 @@ contains
 
       integer :: j
 
-      ! An assignment to all of these elements at once would allocate a copy of their list.
       do j = 1, self%changed
-         self%is_kept(self%spring(j)) = .false.
+         call count_in(self, self%spring(j), -1)
       end do
       self%changed = 0
       self%open = .false.

@@ -5,7 +5,7 @@ module rbs_hysteresis_springs
    use rbs_base_constants, only: unbounded, out_of_bounds
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_journal, only: journal_type
+   use rbs_hysteresis_journal, only: journal_type, block_length
    use rbs_hysteresis_layer_joints, only: layer_joints
    use rbs_hysteresis_layered_fibre_path, only: go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
@@ -20,9 +20,6 @@ module rbs_hysteresis_springs
    !> Most lines within one move. More mean that a rule cycles through lines without length, which is an error
    !> of the rule. The longest correct move closes all open inner loops in the memory of a rule.
    integer, parameter :: most_lines = 10000
-
-   !> Springs that are looked at together whether they leave their lines.
-   integer, parameter :: block_length = 16
 
    !> `count` springs in their present state. Assignment copies everything.
    type :: spring_array
@@ -75,8 +72,8 @@ module rbs_hysteresis_springs
    contains
       procedure :: create, restart, force, forces, find_forces, find_resistance, end_toward, advance_to
       procedure :: advance_on_branch, leave, arrive, load_to, line_of, set_stiffness, put, release, is_removed
-      procedure :: mark, restore, retry, turn_at, forget_mark, serialize, move_all, carry_to, stay_on_lines
-      procedure :: crushed_joint, fit_planes
+      procedure :: mark, restore, choose_lines, retry, turn_at, forget_mark, serialize, move_all, carry_to
+      procedure :: stay_on_lines, crushed_joint, fit_planes
    end type spring_array
 
 contains
@@ -130,7 +127,7 @@ contains
             self%layered = [self%layered, i]
          end select
       end do
-      call sum_up_joints(self)
+      call sum_up_joints(self, self%d)
    end subroutine create
 
    !> The same springs, virgin once more; their axial loads do not vary.
@@ -149,7 +146,7 @@ contains
          call self%slot(i)%rule%start(axial_load(i), self%slot(i)%memory, line)
          call put_line(self, i, line)
       end do
-      call sum_up_joints(self)
+      call sum_up_joints(self, self%d)
    end subroutine restart
 
    !> Force of one spring at its present deformation [N or N m].
@@ -221,21 +218,25 @@ contains
    end subroutine find_resistance
 
    !> Find the sums of the joints whose layers have changed their lines.
-   pure subroutine sum_up_joints(self)
+   pure subroutine sum_up_joints(self, d)
       type(spring_array), intent(inout) :: self
+      !> Position whose motions become the anchors (coordinates)
+      real(wp), intent(in), contiguous :: d(:)
       integer :: j
 
       do j = 1, self%joints%count
-         if (self%joints%is_changed(j)) call sum_up_joint(self, j)
+         if (self%joints%is_changed(j)) call sum_up_joint(self, j, d)
       end do
    end subroutine sum_up_joints
 
-   !> Find the sums of one joint on the present lines of its layers, with its present motion as anchor.
-   pure subroutine sum_up_joint(self, joint)
+   !> Find the sums of one joint on the present lines of its layers, with its motion in a position as anchor.
+   pure subroutine sum_up_joint(self, joint, d)
       type(spring_array), intent(inout) :: self
       integer, intent(in) :: joint
+      !> (coordinates)
+      real(wp), intent(in), contiguous :: d(:)
 
-      self%joints%anchor(:, joint) = self%joints%motion(joint, self%d)
+      self%joints%anchor(:, joint) = self%joints%motion(joint, d)
       call self%joints%sum_up(joint, self%d0, self%f0, self%k)
    end subroutine sum_up_joint
 
@@ -245,7 +246,7 @@ contains
       integer, intent(in) :: i
 
       if (self%joints%count == 0) return
-      if (self%joints%of(i) > 0) call sum_up_joint(self, self%joints%of(i))
+      if (self%joints%of(i) > 0) call sum_up_joint(self, self%joints%of(i), self%d)
    end subroutine sum_up_joint_of
 
    !> Let the line of a spring have another stiffness, for a virtual motion.
@@ -305,11 +306,7 @@ contains
       f_mean = self%f0(i) + self%k(i)*(0.5_wp*(d + self%d(i)) - self%d0(i))
       self%work(i) = self%work(i) + f_mean*(d - self%d(i))
       self%d(i) = d
-      if (self%unload_on_reversal(i) > 0) then
-         self%lower(i) = d
-      else if (self%unload_on_reversal(i) < 0) then
-         self%upper(i) = d
-      end if
+      call follow_rear_end(self, i)
    end subroutine advance_on_branch
 
    !> Move to the end of the present line and get the line that follows from the rule. When the motion turns
@@ -323,7 +320,7 @@ contains
 
       line = self%line_of(i)
       if (self%journal%open) then
-         call self%journal%keep(i, line, self%slot(i))
+         call self%journal%keep(i, self%d(i), self%work(i), line, self%slot(i))
          call self%journal%leave_branch(i, direction, merge(self%upper(i), self%lower(i), direction > 0))
       end if
       ! On a reversal it stays where it is.
@@ -350,8 +347,7 @@ contains
       ! Direction 0: `retry` does not let this spring enter its branch again as before.
       if (self%journal%open) self%journal%direction(i) = 0
       ! A branch that unloads on reversal starts at the present deformation, to the last bit.
-      if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
-      if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
+      call follow_rear_end(self, i)
       call sum_up_joint_of(self, i)
    end subroutine leave
 
@@ -403,11 +399,13 @@ contains
       found = .false.
    end subroutine load_to
 
-   !> Mark the present state, to which `restore` returns. Only springs that change their lines are copied.
+   !> Mark the present state, to which `restore` returns. Only springs that change their lines are copied as
+   !> wholes.
    subroutine mark(self)
       class(spring_array), intent(inout) :: self
 
-      call self%journal%start(self%d, self%work, self%events)
+      call self%journal%start(size(self%d), self%count, self%events)
+      call self%journal%save_all(self%d, self%work)
    end subroutine mark
 
    !> From now on `retry` takes a spring to a turning point first, and from there to its new deformation.
@@ -437,11 +435,37 @@ contains
       class(spring_array), intent(inout) :: self
 
       call go_back(self)
-      call sum_up_joints(self)
+      call sum_up_joints(self, self%d)
    end subroutine restore
 
-   !> Move every spring from the mark to new deformations. A spring that passes through the same branches as
-   !> in the last move is put where it entered the last of them; the state is the same to the last bit.
+   !> Put the springs on the lines that they have at new deformations, each in one direction from the mark,
+   !> which is the present state if there is none. Those that stay on their lines are not moved; `carry_to`
+   !> moves all. A spring that passes through the same branches as in the last move enters the last of them
+   !> again; the state is the same to the last bit.
+   subroutine choose_lines(self, d)
+      class(spring_array), intent(inout) :: self
+      !> New deformations and the coordinates behind them [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+      logical :: again
+
+      again = self%journal%open
+      if (self%axial_load_varies) then
+         ! The ways of joints depend on their axial loads too, so no branch is entered again.
+         if (again) call go_back(self)
+         if (.not. again) call self%mark()
+         call self%move_all(d)
+         return
+      end if
+      if (again) then
+         call go_back(self, d)
+      else
+         call self%journal%start(size(self%d), self%count, self%events)
+      end if
+      call leave_lines(self, d, again)
+      if (.not. self%stuck) call sum_up_joints(self, d)
+   end subroutine choose_lines
+
+   !> Move every spring from the mark to new deformations.
    subroutine retry(self, d)
       class(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
@@ -465,7 +489,7 @@ contains
       end do
       if (self%stuck) return
       call advance_all(self, d)
-      call sum_up_joints(self)
+      call sum_up_joints(self, self%d)
    end subroutine retry
 
    !> Move the springs that leave their lines on the way to new deformations, one after the other. Most stay:
@@ -476,25 +500,22 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       !> Whether those that have kept their branches enter these again
       logical, intent(in) :: again
-      logical :: has_kept(0:self%count/block_length), enters
-      integer :: first, last, i
+      logical :: on_lines, enters
+      integer :: first, last, kept, i
 
-      has_kept = .false.
-      if (again) then
-         do i = 1, self%journal%changed
-            has_kept((self%journal%spring(i) - 1)/block_length) = .true.
-         end do
-      end if
+      kept = 0
       do first = 1, self%count, block_length
          last = min(first + block_length - 1, self%count)
-         if (.not. has_kept((first - 1)/block_length)) then
-            if (are_within(last - first + 1, d(first:), self%lower(first:), self%upper(first:))) cycle
-         end if
+         on_lines = are_on_lines(last - first + 1, d(first:), self%lower(first:), self%upper(first:))
+         if (again) kept = self%journal%in_block((first - 1)/block_length + 1)
+         if (on_lines .and. kept == 0) cycle
          do i = first, last
             enters = .false.
-            if (again) enters = self%journal%is_kept(i) .and. self%journal%direction(i) /= 0
+            if (kept > 0) enters = self%journal%is_kept(i) .and. self%journal%direction(i) /= 0
             if (enters) then
                call enter_again(self, i)
+            else if (on_lines) then
+               cycle
             else if (d(i) <= self%upper(i) .and. d(i) >= self%lower(i)) then
                cycle
             end if
@@ -502,6 +523,22 @@ contains
          end do
       end do
    end subroutine leave_lines
+
+   !> Whether n springs at new deformations are on their lines.
+   pure logical function are_on_lines(n, d, lower, upper)
+      integer, intent(in) :: n
+      !> Deformations, and the lowest and highest of each line [m or rad]
+      real(wp), intent(in) :: d(n), lower(n), upper(n)
+      real(wp) :: beyond
+      integer :: i
+
+      beyond = 0.0_wp
+      !$omp simd reduction(max:beyond)
+      do i = 1, n
+         beyond = max(beyond, d(i) - upper(i), lower(i) - d(i))
+      end do
+      are_on_lines = .not. beyond > 0.0_wp
+   end function are_on_lines
 
    !> Put spring i, which is at the mark, where it entered its present branch in the last move; the branches
    !> on this way count as left again.
@@ -512,8 +549,7 @@ contains
       self%d(i) = self%journal%d_entered(i)
       self%work(i) = self%journal%work_entered(i)
       self%events = self%events + self%journal%branches(i)
-      if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
-      if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
+      call follow_rear_end(self, i)
    end subroutine enter_again
 
    !> Return to the mark. Of springs that pass their present branch again on the way to new deformations,
@@ -526,17 +562,17 @@ contains
       integer :: i, j, left
 
       associate (journal => self%journal)
-         do i = 1, size(self%d)
-            self%d(i) = journal%d(i)
-         end do
-         do i = 1, self%count
-            self%work(i) = journal%work(i)
-         end do
+         if (journal%whole) then
+            self%d(:) = journal%d
+            self%work(:) = journal%work
+         end if
          self%events = journal%events
          self%stuck = .false.
          left = 0
          do j = 1, journal%changed
             i = journal%spring(j)
+            self%d(i) = journal%d(i)
+            self%work(i) = journal%work(i)
             ! A spring that decays with the work of others depends on their ways.
             stays = present(d) .and. .not. self%slot(i)%needs_flexural_work
             if (stays) stays = journal%passes_again(i, d(i))
@@ -547,16 +583,28 @@ contains
             else
                call journal%give_back(i, self%slot(i))
                call put_line(self, i, journal%line(j))
+               call follow_rear_end(self, i)
             end if
          end do
          journal%changed = left
-         do i = 1, self%count
-            if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
-            if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
-         end do
+         ! Springs on one-way lines that have moved without leaving them
+         if (journal%whole) then
+            do i = 1, self%count
+               call follow_rear_end(self, i)
+            end do
+         end if
       end associate
       if (self%axial_load_varies) call self%fit_planes()
    end subroutine go_back
+
+   !> Let the rear end of a line that unloads on reversal be the present deformation.
+   pure subroutine follow_rear_end(self, i)
+      type(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+
+      if (self%unload_on_reversal(i) > 0) self%lower(i) = self%d(i)
+      if (self%unload_on_reversal(i) < 0) self%upper(i) = self%d(i)
+   end subroutine follow_rear_end
 
    !> Save or restore the deformations, lines and works of the springs and the memory of their rules.
    subroutine serialize(self, stream)
@@ -634,8 +682,7 @@ contains
       call put_line(self, i, line)
       self%d(i) = d
       self%work(i) = work
-      if (line%unload_on_reversal > 0) self%lower(i) = d
-      if (line%unload_on_reversal < 0) self%upper(i) = d
+      call follow_rear_end(self, i)
       call sum_up_joint_of(self, i)
    end subroutine put
 
@@ -665,6 +712,7 @@ contains
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
+      if (self%journal%open .and. .not. self%journal%whole) call self%journal%save_all(self%d, self%work)
       if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
@@ -679,7 +727,7 @@ contains
       if (self%stuck) return
       ! The others move along their lines; a spring that has arrived stays where it is.
       call advance_all(self, d)
-      call sum_up_joints(self)
+      call sum_up_joints(self, self%d)
    end subroutine move_all
 
    !> Whether all springs can go to a new position on their present lines, with no deformation of
@@ -710,6 +758,7 @@ contains
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
+      if (self%journal%open .and. .not. self%journal%whole) call self%journal%save_all(self%d, self%work)
       if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
          call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
@@ -772,6 +821,7 @@ contains
       integer :: i, one_way
 
       one_way = 0
+      !$omp simd reduction(ior:one_way)
       do i = 1, n
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to(i) + d(i)) - d0(i)))*(to(i) - d(i))
          d(i) = to(i)
@@ -824,7 +874,8 @@ contains
          if (.not. abs(d(i) - self%d(i)) + &
              abs(self%target_axial_load(i) - self%reference_axial_load(i)) > 0.0_wp) cycle
          ! A trial that is marked saves the joint first.
-         if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
+         if (self%journal%open) call self%journal%keep(i, self%d(i), self%work(i), self%line_of(i), &
+                                                          self%slot(i))
          select type (section => self%slot(i)%memory)
          type is (fibre_section)
             call go(section, d(i), self%target_axial_load(i), self%work(i))

@@ -655,9 +655,11 @@ contains
    end subroutine add_damping
 
    !> Sizes of forces and works in parts that have no spring, measures of round-off; here no part is without.
-   subroutine size_of_parts(self, springs, least, force, terms, work)
+   subroutine size_of_parts(self, springs, d, least, force, terms, work)
       class(structure_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
+      !> Position (coordinates)
+      real(wp), intent(in), contiguous :: d(:)
       !> Least displacement that counts, in shares of the height
       real(wp), intent(in) :: least
       !> Largest force [N], moments over the height; the largest force [N] and the work [J] if no terms of

@@ -188,17 +188,24 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
       type(spring_record) :: specs(6)
-      type(spring_array) :: springs, undisturbed, moved
+      type(spring_array) :: springs, undisturbed, moved, tried
       real(wp) :: point(6), other(6)
       integer :: round, trial, i
+      !> Whether springs that stay on their lines are not moved in trials
+      logical :: lines_alone
 
       call all_kinds(specs)
       call make_springs(springs, specs)
       do round = 1, 300
          undisturbed = springs
-         call springs%mark()
+         lines_alone = mod(round, 2) == 0
          call random_move(random, point)
-         call springs%move_all(point)
+         if (lines_alone) then
+            call springs%choose_lines(point)
+         else
+            call springs%mark()
+            call springs%move_all(point)
+         end if
          do trial = 1, 6
             call random_move(random, other)
             if (mod(trial + round, 4) > 0) then
@@ -212,13 +219,24 @@ contains
                   call springs%leave(i, -springs%unload_on_reversal(i))
                end if
             end if
-            call springs%retry(point)
+            if (lines_alone) then
+               call springs%choose_lines(point)
+            else
+               call springs%retry(point)
+            end if
+            tried = springs
+            if (lines_alone) call tried%carry_to(point)
             moved = undisturbed
             call moved%move_all(point)
-            call check_alike(error, springs, moved, random, 'round '//to_text(round))
+            call check_alike(error, tried, moved, random, 'round '//to_text(round))
             if (allocated(error)) return
          end do
-         if (mod(round, 5) == 0) call springs%restore()
+         if (lines_alone .and. mod(round, 3) > 0) call springs%carry_to(point)
+         if (mod(round, 3) == 0 .or. mod(round, 5) == 0) then
+            call springs%restore()
+            call check_alike(error, springs, undisturbed, random, 'restored in round '//to_text(round))
+            if (allocated(error)) return
+         end if
          call springs%forget_mark()
       end do
       call check_true(error, springs%events > 100, 'lines were left')

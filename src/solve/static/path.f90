@@ -694,7 +694,7 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp) :: force, terms, work
 
-      call structure%size_of_parts(springs, small_motion, force, terms, work)
+      call structure%size_of_parts(springs, springs%d, small_motion, force, terms, work)
       self%largest_force = max(self%largest_force, force)
       self%stiff_force = max(self%stiff_force, terms)
       self%stiff_work = max(self%stiff_work, work)

@@ -48,6 +48,9 @@ module rbs_solve_time_implicit
       real(wp), private :: sure_step = 0.0_wp
       integer, private :: sure_version = -1, unchecked = 0
       logical, private :: is_first = .false.
+      !> Potential energies at the start and at the end of the step, and whether the first is known [J]
+      real(wp), private :: potential(2) = 0.0_wp
+      logical, private :: potential_known = .false.
       !> Whether springs without stiffness shared a motion, in an element or about a node, in a trial
       logical, private :: ambiguous = .false.
       !> How far the unknowns had moved where the last round of `snap` began (unknowns); how often each spring
@@ -114,6 +117,7 @@ contains
 
       call self%step%start(state)
       self%sure_version = -1
+      self%potential_known = .false.
       if (allocated(self%dx)) return
       call self%tangent%create(state%motion%structure)
       allocate (self%anchor(state%motion%structure%unknowns), self%returns(size(state%q)))
@@ -334,6 +338,8 @@ contains
       call swap(state%v, self%step%w1)
       state%time = state%time + self%h
       state%load = self%load
+      self%potential(1) = self%potential(2)
+      self%potential_known = self%weighed
       call self%step%go_on(state)
    end subroutine commit
 

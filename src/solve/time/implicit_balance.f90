@@ -155,7 +155,7 @@ contains
          self%largest = 0.0_wp
          call self%measure(structure, self%a0, state%load, relative)
          ! A structure at rest is measured by the forces of its members and its dead load.
-         call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
+         call structure%size_of_parts(state%springs, state%q, 0.0_wp, force, terms, work)
          self%largest = max(self%scale, force)
       end associate
    end subroutine start
@@ -280,8 +280,8 @@ contains
       !> Size of the residual relative to the forces
       real(wp), intent(out) :: relative
 
-      ! The forces of the last end may not be at hand; and only those of elements are worth the saving.
-      if (.not. self%known .or. size(self%now%tangent) == 0) then
+      ! The forces of the last end may not be at hand, or springs may be damped.
+      if (.not. self%known .or. .not. (size(self%now%tangent) > 0 .or. state%motion%plain)) then
          call self%find_residual(state, h, load, relative)
          return
       end if
@@ -531,7 +531,7 @@ contains
             end do
          end do
          ! Forces of members are sums over whole displacements, not over those of the step.
-         call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
+         call structure%size_of_parts(state%springs, self%q1, 0.0_wp, force, terms, work)
          is_round_off = all(abs(self%r) <= round_off_of_sums* &
                             (sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
                              + max(force, terms)/unit_factor))

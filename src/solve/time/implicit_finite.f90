@@ -226,6 +226,7 @@ contains
       call find_changes()
       self%q1(:) = state%q + self%change
       call self%move_springs(state, self%q1, in_range)
+      if (in_range .and. self%marked) call state%springs%carry_to(self%q1)
       if (in_range) call find_residual()
 
    contains

@@ -271,8 +271,8 @@ contains
       end do
    end subroutine search_line
 
-   !> Move the springs from the start of the step to a trial, each in one direction. As long as all stay on
-   !> their lines nothing need be moved.
+   !> Put the springs on the lines that they have at a trial, each in one direction from the start of the
+   !> step. As long as all stay on their lines nothing need be done.
    subroutine move_springs(self, state, q, in_range)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
@@ -289,13 +289,8 @@ contains
       call state%springs%joints%open_layers(q)
       in_range = in_bounds(size(q), q)
       if (.not. in_range) return
-      if (self%marked) then
-         call state%springs%retry(q)
-      else
-         call state%springs%mark()
-         self%marked = .true.
-         call state%springs%move_all(q)
-      end if
+      call state%springs%choose_lines(q)
+      self%marked = .true.
    end subroutine move_springs
 
 end module rbs_solve_time_newton

@@ -138,7 +138,7 @@ contains
       type(state_type), intent(inout) :: state
       !> Energy [J]; that of the motion and the springs is the scale of the loss
       real(wp), intent(out) :: loss, energy
-      real(wp) :: kinetic, potential
+      real(wp) :: kinetic
 
       call self%find_works(state)
       call state%springs%carry_to(self%step%q1)
@@ -146,12 +146,14 @@ contains
                  work_before => state%springs%journal%work)
          ! The journal has the works at the start of the step.
          kinetic = structure%kinetic_energy(state%q, state%v)
-         potential = structure%potential_energy(state%q)
+         if (.not. self%potential_known) self%potential(1) = structure%potential_energy(state%q)
+         self%potential_known = .true.
+         self%potential(2) = structure%potential_energy(self%step%q1)
          loss = self%of_loads - self%of_damping &
                 - (total(size(work), work) - total(size(work), work_before)) &
                 - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
-                - (structure%potential_energy(self%step%q1) - potential)
-         energy = abs(total(size(work), work)) + kinetic + of_potential*abs(potential)
+                - (self%potential(2) - self%potential(1))
+         energy = abs(total(size(work), work)) + kinetic + of_potential*abs(self%potential(1))
       end associate
    end subroutine find_loss
 

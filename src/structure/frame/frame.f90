@@ -478,10 +478,12 @@ contains
 
    !> Sizes that measure round-off: the largest force of elements and dead loads and, as if all terms had one
    !> sign, the largest force and the work of elements; moments over the height.
-   subroutine size_of_parts(self, springs, least, force, terms, work)
+   subroutine size_of_parts(self, springs, d, least, force, terms, work)
       class(frame_type), intent(in) :: self
-      !> Springs in their present state
+      !> Springs on their present lines
       type(spring_array), intent(in) :: springs
+      !> Position (coordinates)
+      real(wp), intent(in), contiguous :: d(:)
       !> Least displacement that counts, in shares of the height
       real(wp), intent(in) :: least
       !> Largest force [N]; largest force of terms of one sign [N], and their work [J]
@@ -493,13 +495,13 @@ contains
       force = maxval(abs(self%dead)/self%reach)
       terms = 0.0_wp
       work = 0.0_wp
-      f = springs%forces(springs%d)
-      associate (x => springs%d(self%springs + 1:self%joints%before))
+      f = springs%forces(d)
+      associate (x => d(self%springs + 1:self%joints%before))
          do i = 1, size(self%element)
             associate (e => self%element(i))
                ! Elements behind the members are panels.
                if (i <= self%members) then
-                  call self%member_forces(i, springs%d, f, s)
+                  call self%member_forces(i, d, f, s)
                   force = max(force, maxval(abs(s)*to_force))
                end if
                q = motion_terms(e, max(abs(x), least*self%total_height/self%reach))
