@@ -49,6 +49,10 @@ module rbs_solve_ensemble_lane_arrays
       real(wp) :: base(lanes) = 0.0_wp, rotation(lanes) = 0.0_wp, seen(lanes) = 0.0_wp
       !> Whether a deformation is where a limit state may be reached, and whether it is in any lane
       real(wp) :: beyond(lanes) = 0.0_wp, any_beyond = 0.0_wp
+      !> Whether a spring may come there on its present line, and whether one may in any lane: else no
+      !> deformation need be looked at
+      real(wp) :: may_reach(lanes) = 0.0_wp
+      logical :: watched = .false.
       !> The largest error of the energy, and the largest energy, at the times of the motion
       real(wp) :: residual(lanes) = 0.0_wp, most(lanes) = 0.0_wp
       !> Whether the run has ended; intervals that are left

@@ -102,6 +102,7 @@ contains
          failed = 0
          do j = 1, count
             call finish_step_scalar(batch, list(j), error)
+            call find_watched(batch, list(j))
             if (.not. allocated(error)) cycle
             failed = failed + 1
             fails(failed) = list(j)
@@ -395,9 +396,24 @@ contains
             state%q(:) = y%q(l, :)
             call state%monitor%check_limits(state%springs, state%q, x%displacement(l), x%t(l))
             call bounds_to_lane(y, l, state)
+            call find_watched(batch, l)
          end associate
       end do
    end subroutine check_limit_states
+
+   !> Find whether a spring of a lane may come to a limit state on its present line. Lines change only where
+   !> steps are taken alone.
+   pure subroutine find_watched(batch, l)
+      type(batch_type), intent(inout) :: batch
+      !> Number of the lane
+      integer, intent(in) :: l
+
+      associate (x => batch%x, y => batch%y)
+         x%may_reach(l) = merge(1.0_wp, 0.0_wp, any(y%upper(l, :) > y%highest(l, :) .or. &
+                                                    y%lower(l, :) < y%lowest(l, :)))
+         x%watched = any(x%may_reach > 0.5_wp)
+      end associate
+   end subroutine find_watched
 
    !> Store fate and measures of the run of a lane, which has ended, and leave the lane empty.
    subroutine unload(batch, l, task, result, error)
@@ -438,6 +454,7 @@ contains
          end if
          x%active(l) = 0.0_wp
          x%ready(l) = 0.0_wp
+         x%may_reach(l) = 0.0_wp
          lane%task = 0
       end associate
    end subroutine unload
