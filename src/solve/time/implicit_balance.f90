@@ -41,7 +41,7 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable :: q1(:), w1(:)
       !> Runs of the coordinates that are no layers (2, runs), see `layer_joints`
       integer, allocatable :: run(:, :)
-      !> Whether forces and tangents are those of the end of the last step
+      !> Whether forces and tangents are those of the start of the step
       logical, private :: known = .false.
       !> Forces of the present trial
       type(motion_result) :: now
@@ -143,13 +143,13 @@ contains
                call set_stiffness(structure, self%spring_factor, self%stiff)
             end if
          end if
-         self%known = .false.
          call structure%unknown_rates(state%v, self%v0)
          self%version = -1
          call self%fit_elements(state)
          call self%set_damping(state)
          call find_forces(state, state%q, state%v, self%v0, state%load, self%damping_tangent, self%now, &
                           self%g0)
+         self%known = .true.
          self%a0 = 0.0_wp
          where (structure%inertias > 0.0_wp) self%a0 = self%g0/structure%inertias
          self%largest = 0.0_wp
