@@ -2,6 +2,7 @@
 !> analysis ended in; and the state that it ends in itself.
 module rbs_solve_time_start
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_inner_product, only: total
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: vary_axial_loads
@@ -71,7 +72,7 @@ contains
       ! The balance of energy keeps the residual that it had.
       residual = checkpoint%residual - (state%of_loads + state%at_begin &
                                      - (structure%kinetic_energy(state%q, state%v) + state%along_joints) &
-                                     - sum(state%springs%work) - state%of_damping &
+                                     - total(state%springs%count, state%springs%work) - state%of_damping &
                                      - structure%potential_energy(state%q))
       if (abs(residual) > 0.0_wp) state%at_begin = state%at_begin + residual
    end subroutine resume_state
@@ -153,7 +154,8 @@ contains
       if (.not. initial%opening_given) call close_joints(state, error)
       if (allocated(error)) return
       call state%springs%move_all(state%q)
-      state%at_begin = state%motion%structure%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+      state%at_begin = state%motion%structure%kinetic_energy(state%q, state%v) &
+                       + total(state%springs%count, state%springs%work) &
                        + state%motion%structure%potential_energy(state%q)
    end subroutine start_state
 
