@@ -39,6 +39,8 @@ module rbs_solve_static_straight
    !> Shortest leap, as a share of the way to a target, and most trials of one. Shares of the largest force,
    !> or displacement, by whose work a leap may be wrong, and which turns of springs may change in it.
    real(wp), parameter :: shortest_leap = 1.0_wp/64.0_wp, missing_work = 1.0e-2_wp, missing_turns = 1.0e-4_wp
+   !> A point of a path is in equilibrium within this share of the largest force.
+   real(wp), parameter :: missing_force = 1.0e-9_wp
    !> A change below this share of the largest force is round-off.
    real(wp), parameter :: of_round_off = 1.0e-12_wp
    integer, parameter :: most_trials = 12
@@ -217,7 +219,8 @@ contains
             work = 0.5_wp*(force + self%force)*moved + slope*change**2/12.0_wp
             largest = max(self%largest(1), abs(force), abs(self%force))
             arrived = (line%is_stable .or. self%by_force) .and. &
-                      abs(work - (stored() - energy)) <= missing_work*abs(largest*moved)
+                      abs(work - (stored() - energy)) <= missing_work*abs(largest*moved) .and. &
+                      self%unbalance() <= missing_force*largest
             if (self%loses_load() .or. self%structure%next_failed_member(springs) > 0) then
                arrived = .false.
                fails = .true.
