@@ -121,7 +121,7 @@ def test_every_field_of_a_case_counts_for_equality():
         "title": "pulled", "column": OPEN, "method": "auto", "time": CASE.time + 1.0,
         "displacement": -PATH, "force": PATH, "ground_acceleration": PATH,
         "vertical_acceleration": PATH, "axial_load": PATH, "ground_acceleration_y": PATH,
-        "settings": {},
+        "settings": {}, "names_method": not CASE.names_method,
         "target": {"method": "en_1998"}, "records": {"folder": "motions"},
         "assess": [{"code": "asce_41"}],
         "limit": [{"code": "asce_41"}], "files": {"file": "rows.csv"},

@@ -98,7 +98,7 @@ class Case:
     limit: list[dict[str, Any]] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
     ground_acceleration_y: Array | None = None
-    names_method: bool = field(default=True, compare=False)
+    names_method: bool = True
 
     @property
     def dynamic(self) -> bool:
@@ -199,7 +199,7 @@ class Case:
         """Return whether another case has the same column, histories and settings, bit for bit."""
         if not isinstance(other, Case):
             return NotImplemented
-        names = [field.name for field in fields(self) if field.compare]
+        names = [field.name for field in fields(self)]
         return all(same(getattr(self, name), getattr(other, name)) for name in names)
 
     __hash__ = None  # type: ignore[assignment]
