@@ -54,6 +54,7 @@ contains
       real(wp), intent(in) :: y(:)
       !> Number of coordinates of a position before those of the joints
       integer, intent(in) :: before
+      !> Whether each coordinate is that of a joint or of a spring without one; none before and behind them
       logical :: moves(0:before + 2*maxval([0, of]) + 1)
       integer :: i, j
 
@@ -68,9 +69,11 @@ contains
       moves = .true.
       moves(1:size(of)) = of == 0
       moves([0, ubound(moves, 1)]) = .false.
-      associate (first => pack([(i, i=1, size(moves) - 2)], moves(1:) .and. .not. moves(:size(moves) - 2)), &
-                 last => pack([(i, i=1, size(moves) - 2)], moves(1:) .and. .not. moves(2:)))
-         self%run = transpose(reshape([first, last], [size(first), 2]))
+      associate (m => ubound(moves, 1) - 1)
+         associate (first => pack([(i, i=1, m)], moves(1:m) .and. .not. moves(0:m - 1)), &
+                    last => pack([(i, i=1, m)], moves(1:m) .and. .not. moves(2:m + 1)))
+            self%run = transpose(reshape([first, last], [size(first), 2]))
+         end associate
       end associate
       self%reach = [(maxval(abs(y), mask=of == j), j=1, self%count)]
       allocate (self%sums(5, self%count), self%anchor(2, self%count), self%seen(2, self%count), &
