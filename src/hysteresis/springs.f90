@@ -52,8 +52,8 @@ module rbs_hysteresis_springs
       type(spring_rules), pointer :: rules => null()
       type(spring_slot), allocatable :: slot(:)
       type(journal_type) :: journal
-      !> Springs that `retry` takes to a turning point first, the first `turned` elements, and these points
-      !> (count) [m or rad]
+      !> Springs that `choose_lines` takes to a turning point first, the first `turned` elements, and these
+      !> points (count) [m or rad]
       integer :: turned = 0
       integer, allocatable :: turning(:)
       real(wp), allocatable :: turning_point(:)
@@ -344,7 +344,7 @@ contains
       integer, intent(in) :: direction
 
       call change_line(self, i, direction)
-      ! Direction 0: `retry` does not let this spring enter its branch again as before.
+      ! Direction 0: `choose_lines` does not let this spring enter its branch again as before.
       if (self%journal%open) self%journal%direction(i) = 0
       ! A branch that unloads on reversal starts at the present deformation, to the last bit.
       call follow_rear_end(self, i)
@@ -408,7 +408,7 @@ contains
       call self%journal%save_all(self%d, self%work)
    end subroutine mark
 
-   !> From now on `retry` takes a spring to a turning point first, and from there to its new deformation.
+   !> From now on `choose_lines` takes a spring to a turning point first, and from there to its new deformation.
    subroutine turn_at(self, i, d)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -439,14 +439,15 @@ contains
    end subroutine restore
 
    !> Put the springs on the lines that they have at new deformations, each in one direction from the mark,
-   !> which is the present state if there is none. Those that stay on their lines are not moved; `carry_to`
-   !> moves all. A spring that passes through the same branches as in the last move enters the last of them
-   !> again; the state is the same to the last bit.
+   !> which is the present state if there is none, or by its turning point. Those that stay on their lines are
+   !> not moved; `carry_to` moves all. A spring that passes through the same branches as in the last move
+   !> enters the last of them again; the state is the same to the last bit.
    subroutine choose_lines(self, d)
       class(spring_array), intent(inout) :: self
       !> New deformations and the coordinates behind them [m or rad]
       real(wp), intent(in), contiguous :: d(:)
       logical :: again
+      integer :: j
 
       again = self%journal%open
       if (self%axial_load_varies) then
@@ -461,35 +462,25 @@ contains
       else
          call self%journal%start(size(self%d), self%count, self%events)
       end if
+      do j = 1, self%turned
+         call self%advance_to(self%turning(j), self%turning_point(j))
+         self%journal%direction(self%turning(j)) = 0
+      end do
       call leave_lines(self, d, again)
+      do j = 1, self%turned
+         self%journal%direction(self%turning(j)) = 0
+      end do
       if (.not. self%stuck) call sum_up_joints(self, d)
    end subroutine choose_lines
 
    !> Move every spring from the mark to new deformations.
    subroutine retry(self, d)
       class(spring_array), intent(inout) :: self
-      !> New deformations (count) [m or rad]
+      !> New deformations and the coordinates behind them [m or rad]
       real(wp), intent(in), contiguous :: d(:)
-      integer :: j
 
-      if (self%axial_load_varies) then
-         ! The ways of joints depend on their axial loads too, so no branch is entered again.
-         call go_back(self)
-         call self%move_all(d)
-         return
-      end if
-      call go_back(self, d)
-      do j = 1, self%turned
-         call self%advance_to(self%turning(j), self%turning_point(j))
-         self%journal%direction(self%turning(j)) = 0
-      end do
-      call leave_lines(self, d, again=.true.)
-      do j = 1, self%turned
-         self%journal%direction(self%turning(j)) = 0
-      end do
-      if (self%stuck) return
-      call advance_all(self, d)
-      call sum_up_joints(self, self%d)
+      call self%choose_lines(d)
+      if (.not. (self%stuck .or. self%axial_load_varies)) call advance_all(self, d)
    end subroutine retry
 
    !> Move the springs that leave their lines on the way to new deformations, one after the other. Most stay:

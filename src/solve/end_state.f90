@@ -23,7 +23,7 @@ module rbs_solve_end_state
    public :: end_state, checkpoint_type, stamp_of, static_state, moving_state
 
    !> Number of the format; it changes with the contents.
-   integer, parameter :: format = 3
+   integer, parameter :: format = 4
 
    !> Numbers of the head: format, two of the model, two of the rest, bodies, kinematics, springs.
    integer, parameter :: head = 8

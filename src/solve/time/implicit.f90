@@ -546,12 +546,18 @@ contains
       lifts([lateral, horizontal, sideways]) = 0.0_wp
    end function lifts
 
-   !> Save or restore the motion of the bodies at the start of a step.
+   !> Save or restore the motion of the bodies at the start of a step, and which step is checked next.
    subroutine serialize(self, stream)
       class(implicit_stepper), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
+      logical :: is_sure
 
       call self%step%serialize(stream)
+      is_sure = self%sure_version == self%step%version
+      call stream%item(is_sure)
+      call stream%item(self%sure_step)
+      call stream%item(self%unchecked)
+      self%sure_version = merge(self%step%version, -1, is_sure)
    end subroutine serialize
 
 end module rbs_solve_time_implicit

@@ -48,7 +48,7 @@ module rbs_solve_time_implicit_balance
       !> Stiffness of the springs in the tangent (springs), its version, and the resistance in it as a share
       !> of the initial stiffness
       real(wp), allocatable, private :: k(:)
-      integer, private :: version = -1
+      integer :: version = -1
       !> Tangents at the start of a step, and their version, for damping in proportion to the present
       !> stiffness: a force that falls with the stiffness within the step may leave no equilibrium. Empty
       !> where elements have no such damping
@@ -219,8 +219,8 @@ contains
       self%damping_version = state%springs%version
    end subroutine set_damping
 
-   !> Save or restore, whichever the stream is set to, the motion of the bodies at the start of a step and the
-   !> scales of its residual.
+   !> Save or restore, whichever the stream is set to, the motion of the bodies at the start of a step, the
+   !> scales of its residual, and what springs between the unknowns lack.
    subroutine serialize(self, stream)
       class(step_balance), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -229,6 +229,7 @@ contains
       call stream%item(self%a0)
       call stream%item(self%g0)
       call stream%item(self%largest)
+      call stream%item(self%now%correction)
    end subroutine serialize
 
    !> Find the tangents of the elements on the present lines, which condense the parts between the unknowns;
