@@ -408,7 +408,7 @@ contains
       call self%journal%save_all(self%d, self%work)
    end subroutine mark
 
-   !> From now on `choose_lines` takes a spring to a turning point first, and from there to its new deformation.
+   !> From now on `choose_lines` takes a spring to a turning point first, and from there to its deformation.
    subroutine turn_at(self, i, d)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i

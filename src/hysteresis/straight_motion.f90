@@ -31,8 +31,10 @@ contains
                  one_way => springs%unload_on_reversal)
          do first = 1, size(rate), block_length
             last = min(first + block_length - 1, size(rate))
-            if (all_have_room(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
-                              upper(first:last), one_way(first:last))) cycle
+            if (.not. any(one_way(first:last)*rate(first:last) < 0.0_wp)) then
+               if (all_are_far(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
+                               upper(first:last), 0.0_wp, 0.0_wp)) cycle
+            end if
             do i = first, last
                ! `upper` is the highest deformation of the line: where the end does not belong to it, the
                ! number below the end, and only a spring beyond that number is blocked.
@@ -51,23 +53,6 @@ contains
          end do
       end associate
    end subroutine find_blocked
-
-   !> Whether n springs all are before the ends of their lines that they move to, and unload on no reversal.
-   pure logical function all_have_room(n, d, rate, lower, upper, one_way)
-      integer, intent(in) :: n, one_way(n)
-      real(wp), intent(in) :: d(n), rate(n), lower(n), upper(n)
-      real(wp) :: stopped, up, room
-      integer :: i
-
-      stopped = 0.0_wp
-      !$omp simd reduction(max:stopped) private(up, room)
-      do i = 1, n
-         up = 0.5_wp + sign(0.5_wp, rate(i))
-         room = up*(upper(i) - d(i)) + (1.0_wp - up)*(d(i) - lower(i))
-         stopped = max(stopped, merge(0.0_wp, 1.0_wp, room > 0.0_wp), (1.0_wp - 2.0_wp*up)*one_way(i))
-      end do
-      all_have_room = .not. stopped > 0.0_wp
-   end function all_have_room
 
    !> The first end of a line that springs reach from the deformations q, moving by q + stride*rate.
    pure subroutine nearest_end(springs, q, rate, stride, ends)
