@@ -160,6 +160,31 @@ def test_joints_of_layers_of_both_planes_open_in_series():
         assert rows.frame(name).springs["opening"][-1, 0] == pytest.approx(-4e5 / k, rel=1e-9)
 
 
+def test_a_drawn_column_in_two_planes_is_as_stiff_along_its_axis_as_in_frames_alone():
+    """Of two depths the mean of both; a case file states what the frames have, and is solved so."""
+    for section in (C, replace(C, width=0.6)):
+        frames = []
+        for bent in (section, section.turned):
+            column = rbsdem.section.member(bent, 3.0, axial_load=5e5)
+            nodes = [
+                FrameNode("foot", 0.0, 0.0, support="fixed", floor=0),
+                FrameNode("top", 0.0, 3.0, floor=1, load_y=-1e4, mass=1e3),
+            ]
+            frames.append(Frame(nodes=nodes, members=[Member("column", "foot", "top", column)]))
+        # 1e4 N on each frame, on the column of both twice as much
+        alone = sum(-rbsdem.cyclic(one, displacement=[1e-9]).y[-1, 1] for one in frames)
+        for one, two in (frames, frames[::-1]):
+            arms = [(one, 0.0, 0.0, 0.0), (two, 90.0, 0.0, 0.0)]
+            building = rbsdem.Building([*arms, (sprung_storey(Elastic(1e7)), 0.0, 4.0)])
+            push = "&loading drive = 'displacement', values = 1e-9 /\n"
+            case = case_of_text(building.to_namelist() + push)
+            assert case.column == building
+            again = building.changed(centres=(0.0, 0.0)).with_kinds({})
+            rows = [rbsdem.cyclic(each, displacement=[1e-9]) for each in (building, again)]
+            for each in (*rows, case.run()):
+                assert -each.frame("x-1").y[-1, 1] == pytest.approx(alone, rel=1e-9)
+
+
 @pytest.mark.parametrize("load", [0.0, 5e6])
 def test_second_order_work_of_columns_in_translation_and_torsion(load):
     # k - P/h along x and y, and the sum of r^2 (k - P/h) about the centre

@@ -68,7 +68,8 @@ class FrameMember:
         from the next step on; a static path ends there with a message.
     length : float, optional
         Clear length that the springs were made for [m], as by `rbsdem.section.member`; members
-        whose own differs by more than 1 % are refused.
+        whose own differs by more than 1 % are refused. A column in two planes of a building has the
+        axial stiffness of such a member, though joints of both planes open.
     name : str, optional
         Name in case files; made up if it is not given.
     sections : pair of Section, optional

@@ -15,7 +15,7 @@ from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Pinching, Spring, Takeda, unchecked
 from rbsdem.model.wall import WallSection
 from rbsdem.section.curvature import column_length
-from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
+from rbsdem.section.layered import LayeredColumn, LayeredModel, area_of_rest, body_lengths, lumping
 from rbsdem.section.paper import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 from rbsdem.section.shear import shear_spring
@@ -348,13 +348,9 @@ def member(
         least = min(halves, key=lambda half: half.steel_area)
         middle = LayeredModel(least, 0.5 * length, axial_load, 2, dry, restrained)
         joints[0.5] = middle.joint.spring
-    # The hinges shorten by their layers, the rest by this.
-    hinges = sum(
-        modulus * area / sum(layer.k for _, layer in joint.layers) for joint in joints.values()
-    )
     return FrameMember(
         modulus=modulus,
-        area=area * length / max(length - hinges, 0.1 * length),
+        area=area_of_rest(area, modulus, length, joints.values()),
         inertia=area * depth**2 / 12,
         flexure={**joints, near: above, 1 - far: below.mirrored()},
         shear={

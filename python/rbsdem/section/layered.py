@@ -54,6 +54,17 @@ def lumping(n: int) -> float:
     return 1 - 0.25 / (n - 1) ** 2
 
 
+def area_of_rest(area: float, modulus: float, length: float, joints: Iterable[Any]) -> float:
+    """Return the area by which joints of layers and the rest of a member have E A in series [m2].
+
+    A column in two planes is the same with the joints of both (`join_rests` of the solver).
+    """
+    closes: float = sum(
+        modulus * area / sum(layer.k for _, layer in joint.layers) for joint in joints
+    )
+    return area * length / max(length - closes, 0.1 * length)
+
+
 @dataclass(frozen=True)
 class LayeredModel:
     """The section, sizes and parameters that a layered column is made from.

@@ -17,7 +17,7 @@ from rbsdem.model.springs import Elastic, Gauge, Layered, Spring, unchecked
 from rbsdem.model.wall import WallSection
 from rbsdem.section.columns import column
 from rbsdem.section.curvature import column_length
-from rbsdem.section.layered import LayeredColumn, LayeredModel, part_of_height
+from rbsdem.section.layered import LayeredColumn, LayeredModel, area_of_rest, part_of_height
 from rbsdem.section.parameters import ModelParameters, parameters
 
 #: Moment over shear at the foot over the height of a wall in a building: that of a triangular load
@@ -219,12 +219,9 @@ def _storey(
         middle = (0.5 * (begins + high) - low) / height
         flexure[middle] = whole.above(stiffness, arm + 0.5 * part, arm - 0.5 * part)
     area, modulus = section.gross_area, section.concrete_law["ec"]
-    layers: Any = foot[0].layers if foot else ()
-    # The layers of the joint shorten by themselves; the area makes the rest stiffer by as much.
-    closes = modulus * area / sum(layer.k for _, layer in layers) if layers else 0.0
     return FrameMember(
         modulus=modulus,
-        area=area * height / max(height - closes, 0.1 * height),
+        area=area_of_rest(area, modulus, height, foot[:1] if foot else ()),
         inertia=section.inertia,
         flexure=flexure,
         shear={0.0: part_of_height(whole.shear[0], height / span)},

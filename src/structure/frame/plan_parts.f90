@@ -4,14 +4,19 @@ module rbs_structure_frame_plan_parts
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_rule, only: rule_type
    use rbs_structure_frame_frame_checks, only: check_reference
    use rbs_structure_frame_frame_record, only: frame_record
    use rbs_structure_frame_new_frame, only: frame_node, frame_member
    use rbs_structure_frame_plan, only: floor_plan, cosine_sine
+   use rbs_structure_spring_location, only: layer
    implicit none
    private
 
    public :: put_planes, put_second_planes
+
+   !> Least flexibility along its axis of the rest of a column in two planes, as a share of the whole.
+   real(wp), parameter :: least_rest = 0.01_wp
 
 contains
 
@@ -206,8 +211,50 @@ contains
                cycle
             end if
             members(number)%axial_of = with
+            ! Springs that were made for a length have their part of its E A.
+            associate (kinds => members([with, number])%kind_of)
+               if (all(is_given(record%kind(kinds)%length))) call join_rests(nodes, members, [with, number])
+            end associate
          end associate
       end do
    end subroutine put_second_planes
+
+   !> Let a column in two planes be as stiff along its axis as its members are alone, in the mean of both: its
+   !> elastic rest is stiffer by the joints of the other plane, which shorten in series with its own.
+   subroutine join_rests(nodes, members, of)
+      type(frame_node), intent(in) :: nodes(:)
+      type(frame_member), intent(inout) :: members(:)
+      !> Numbers of its members in the first plane, whose rest is the column's, and in the second one
+      integer, intent(in) :: of(2)
+      !> Clear length [m]; length per E A of the rests, and how far joints close per force [m/N]
+      real(wp) :: clear(2), rest(2), closes(2)
+      integer :: i
+
+      do i = 1, 2
+         associate (m => members(of(i)), ends => nodes(members(of(i))%node))
+            clear(i) = hypot(ends(2)%x - ends(1)%x, ends(2)%y - ends(1)%y) - sum(m%rigid)
+            rest(i) = clear(i)/m%axial
+            closes(i) = flexibility_of_joints(m)
+         end associate
+      end do
+      if (.not. all(closes > 0.0_wp)) return
+      members(of(1))%axial = clear(1)/max(0.5_wp*sum(rest - closes), 0.5_wp*least_rest*sum(rest + closes))
+   end subroutine join_rests
+
+   !> How far all virgin joints of layers of a member close per axial force [m/N].
+   real(wp) function flexibility_of_joints(m) result(flexible)
+      type(frame_member), intent(in) :: m
+      class(rule_type), allocatable :: rule
+      real(wp) :: k(size(m%kind))
+      integer :: i
+
+      k = 0.0_wp
+      do i = 1, size(m%kind)
+         if (m%kind(i) /= layer) cycle
+         call m%spring(i)%make(rule)
+         k(m%joint(i)) = k(m%joint(i)) + rule%branch%k
+      end do
+      flexible = sum(1.0_wp/pack(k, k > 0.0_wp))
+   end function flexibility_of_joints
 
 end module rbs_structure_frame_plan_parts
