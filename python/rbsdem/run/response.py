@@ -112,7 +112,7 @@ def cyclic(
         halved if springs that turn in it may change the force by 1e-4 of the largest force, or if
         the balance of work is not met; where a 64th of the leap still fails, or it has few events,
         that part goes from event to event. `error_estimate` is what the springs that turn may have
-        changed in all leaps, which is more than the error (``studies/random_frames.py --kind
+        changed in all leaps, mostly more than the error (``studies/random_frames.py --kind
         leaps``); drops of the force below 2 % of it may be passed over. Columns with "finite",
         under axial loads that vary, or with "small" go from event to event all the same.
     max_seconds : float, optional
