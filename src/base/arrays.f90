@@ -4,7 +4,7 @@ module rbs_base_arrays
    implicit none
    private
 
-   public :: swap, copy
+   public :: swap
 
 contains
 
@@ -17,14 +17,5 @@ contains
       call move_alloc(other, one)
       call move_alloc(kept, other)
    end subroutine swap
-
-   !> Copy an array of length m; of its bounds nothing is asked, so that it is copied as a block.
-   pure subroutine copy(m, from, to)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: from(m)
-      real(wp), intent(out) :: to(m)
-
-      to = from
-   end subroutine copy
 
 end module rbs_base_arrays

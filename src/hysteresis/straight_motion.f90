@@ -157,7 +157,7 @@ contains
       real(wp), intent(in) :: q(n), rate(n), stride, slack, way, d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), lower(n), upper(n)
       integer, intent(out) :: near(n), count
-      real(wp) :: to
+      real(wp) :: to, room
       integer :: first, last, i
 
       !$omp simd
@@ -177,11 +177,8 @@ contains
          if (all_are_far(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
                          upper(first:last), slack, way)) cycle
          do i = first, last
-            if (rate(i) > 0.0_wp) then
-               if (upper(i) - d(i) - slack*abs(d(i)) > way*rate(i)) cycle
-            else
-               if (d(i) - lower(i) - slack*abs(d(i)) > -way*rate(i)) cycle
-            end if
+            room = merge(upper(i) - d(i), d(i) - lower(i), rate(i) > 0.0_wp)
+            if (room - slack*abs(d(i)) > way*abs(rate(i))) cycle
             count = count + 1
             near(count) = i
          end do

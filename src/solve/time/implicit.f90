@@ -5,7 +5,7 @@
 !> method oscillates between two branches, the solution moves from end to end instead. A step that
 !> does not converge is taken back to the stored state and cut in two.
 module rbs_solve_time_implicit
-   use rbs_base_arrays, only: copy, swap
+   use rbs_base_arrays, only: swap
    use rbs_base_inner_product, only: inner_product, total
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -354,7 +354,7 @@ contains
       self%step%moved = 0.0_wp
       self%step%resistance = 0.0_wp
       self%is_first = .true.
-      call copy(size(state%q), state%q, self%step%q1)
+      self%step%q1(:) = state%q
       call self%step%find_first(state, self%h, self%load, self%residual)
    end subroutine try_start
 
