@@ -140,6 +140,11 @@ def test_a_wall_along_y_has_the_axial_force_of_its_post():
     assert abs(wall[1] - wall[0]) > 1e3
 
 
+def test_other_kinds_are_those_of_columns_in_two_planes_too(grid):
+    softer = {name: replace(kind, modulus=2e10) for name, kind in grid.named_kinds.items()}
+    assert {member.kind.modulus for member in grid.with_kinds(softer).members} == {2e10}
+
+
 def test_joints_of_layers_of_both_planes_open_in_series():
     ends = [Layered([(-0.2, Elastic(k)), (0.2, Elastic(k))]) for k in (4e8, 7e8)]
     frames = []

@@ -202,7 +202,11 @@ class Building(Frame):
             collapse=collapse,
             control_node=control_node,
             nodes=[node for nodes, _ in laid for node in nodes],
-            members=[_held_up(plane, shared) for _, members in laid for plane in members],
+            members=[
+                replace(member, kind=_held_up(member.kind)) if member.name in shared else member
+                for _, members in laid
+                for member in members
+            ],
             damping=damping,
             losses={
                 f"{plane.name}:{member}": time
@@ -418,9 +422,10 @@ class Building(Frame):
         def changed(plane: Plane) -> Frame:
             """Return the frame of a plane with its share of the other kinds."""
             of_frame = {
-                name: kinds[names[stated(kind)]]
+                name: kinds[names[each]]
                 for name, kind in plane.frame.named_kinds.items()
-                if names.get(stated(kind)) in kinds
+                for each in (stated(_held_up(kind)), stated(kind))
+                if names.get(each) in kinds
             }
             return plane.frame.with_kinds(of_frame)
 
@@ -607,9 +612,8 @@ def _check_one_column(one: tuple[Plane, Member], two: tuple[Plane, Member], alik
         )
 
 
-def _held_up(member: Member, shared: set[str]) -> Member:
-    """Return a member that, as a column of two planes, does not lose its axial load."""
-    if member.name not in shared or member.kind.failure_drift is None:
-        return member
-    kind = replace(member.kind, failure_drift=None, failure_load=None, shear_drift=None)
-    return replace(member, kind=kind)
+def _held_up(kind: FrameMember) -> FrameMember:
+    """Return a kind that, as that of a column of two planes, does not lose its axial load."""
+    if kind.failure_drift is None:
+        return kind
+    return replace(kind, failure_drift=None, failure_load=None, shear_drift=None)
