@@ -31,9 +31,9 @@ contains
                  one_way => springs%unload_on_reversal)
          do first = 1, size(rate), block_length
             last = min(first + block_length - 1, size(rate))
-            if (.not. any(one_way(first:last)*rate(first:last) < 0.0_wp)) then
-               if (all_are_far(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
-                               upper(first:last), 0.0_wp, 0.0_wp)) cycle
+            if (all_are_far(last - first + 1, d(first:last), rate(first:last), lower(first:last), &
+                            upper(first:last), 0.0_wp, 0.0_wp)) then
+               if (.not. any(one_way(first:last)*rate(first:last) < 0.0_wp)) cycle
             end if
             do i = first, last
                ! `upper` is the highest deformation of the line: where the end does not belong to it, the
@@ -95,14 +95,16 @@ contains
       end associate
    end subroutine nearest_end
 
-   !> Whether n springs all are farther from the ends of their lines that they move to than slack*|d| +
-   !> way*|rate|.
+   !> Whether the springs of a block all are farther from the ends of their lines that they move to than
+   !> slack*|d| + way*|rate|. Fewer springs are not looked at together.
    pure logical function all_are_far(n, d, rate, lower, upper, slack, way)
       integer, intent(in) :: n
       real(wp), intent(in) :: d(n), rate(n), lower(n), upper(n), slack, way
       real(wp) :: near, up, room
       integer :: i
 
+      all_are_far = .false.
+      if (n < block_length) return
       near = 0.0_wp
       !$omp simd reduction(max:near) private(up, room)
       do i = 1, n

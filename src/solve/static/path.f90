@@ -119,9 +119,11 @@ module rbs_solve_static_path
       !> Tolerances of a state of the structure, and whether the present point violates them
       type(row_check), private :: check
       logical, private :: violates_balance = .false.
-      !> Position of the potential that was found last, and that potential [J]: a corner asks for it twice
-      real(wp), allocatable, private :: position(:)
+      !> The potential that was found last [J]. The row of a corner and its check ask for it at one position
       real(wp), private :: potential = 0.0_wp
+      real(wp), allocatable, private :: position(:)
+      !> Whether it was found last for the row of a corner
+      logical, private :: knows_potential = .false.
       !> Rotations of the bodies, a work array (n)
       real(wp), allocatable, private :: rotation(:)
       !> Report on a corner between two targets: its summary, and its recorder if the row is to be kept
@@ -489,7 +491,11 @@ contains
       type(error_type), allocatable :: error
 
       call update_peak(self)
-      if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
+      if (self%task%recorder%corners) then
+         call keep_row(self, self%number - 1 + share, error)
+         self%position = self%springs%d
+         self%knows_potential = .true.
+      end if
    end subroutine record_corner
 
    !> Straight line from the present point to another one. Where it passes zero displacement, the
@@ -593,14 +599,12 @@ contains
    !> The energies at the present point, and the residual of their balance.
    type(energy_type) function energies(self) result(energy)
       class(static_path), intent(inout) :: self
-      logical :: is_new
 
-      is_new = .not. allocated(self%position)
-      if (.not. is_new) is_new = .not. all(abs(self%springs%d - self%position) <= 0.0_wp)
-      if (is_new) then
-         self%position = self%springs%d
+      if (self%knows_potential) self%knows_potential = all(abs(self%springs%d - self%position) <= 0.0_wp)
+      if (.not. self%knows_potential) then
          self%potential = self%without_top_load%potential_energy(self%springs%d)
       end if
+      self%knows_potential = .false.
       energy%input = self%work
       energy%spring = total(self%springs%count, self%springs%work)
       energy%damping = self%damped_before
