@@ -63,7 +63,7 @@ contains
 
       !> Set one key to its value: an item as `key`, `key:5` or `key=word`.
       subroutine put_item(item)
-         !> What stands between two tabs
+         !> The text between two tabs
          character(len=*), intent(in) :: item
          integer :: mark, key_index, count
 

@@ -63,7 +63,7 @@ contains
       class(journal_type), intent(inout) :: self
       !> Present deformations with the coordinates behind them, and works (count)
       real(wp), intent(in), contiguous :: d(:), work(:)
-      !> What has been saved already, in the order of the changes
+      !> Deformations and works that have been saved already, in the order of the changes
       real(wp) :: saved(2, self%changed)
       integer :: i, j
 

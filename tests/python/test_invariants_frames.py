@@ -673,12 +673,12 @@ def test_a_factor_knows_nothing_of_earlier_bands() -> None:
     judge_again(test_cut_and_restart, 1503, 12)
 
 
-@relation(40, judged=0.5, bar=1e-13)
+@relation(40, judged=0.5)
 def test_points_on_the_way(rng: Rng) -> float:
-    """Seven points on each way change its end by round-off at most.
+    """Seven points on each way change no bit of its end.
 
-    Without a mechanism they change no bit. On one springs stand still but for round-off, by which
-    a layer may be led to the end of its line.
+    A search may find some on a mechanism, where springs stand still but for round-off: this may
+    lead a layer to the end of its line.
     """
     made = frame(rng, any_family(rng))
     path = drifts(rng, made)
@@ -692,8 +692,7 @@ def test_points_on_the_way(rng: Rng) -> float:
     rows = min(whole.time.size, fine.time.size // 7)
     if not rows:
         raise Discard
-    away = np.abs(fine.force[6::7][:rows] - whole.force[:rows]).max()
-    return float(away / np.abs(whole.force[:rows]).max())
+    return float(np.abs(fine.force[6::7][:rows] - whole.force[:rows]).max())
 
 
 @relation(40, judged=0.6, bar=1e-7)

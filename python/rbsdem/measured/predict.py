@@ -270,11 +270,16 @@ def predict(
         if learned is not None:
             changes = _moved(row[0], learned)
         if bands:
-            how: dict[str, Any] = {"samples": samples, "learned": learned, "rig": rig}
-            if learned is None and row[0].status == "completed":
-                how["force"] = np.nan_to_num(row[0].force)
+            is_known = learned is None and row[0].status == "completed"
             with unwarned():
-                changes["band"] = band_of(column, row[0].displacement, **how)
+                changes["band"] = band_of(
+                    column,
+                    row[0].displacement,
+                    samples=samples,
+                    learned=learned,
+                    rig=rig,
+                    force=np.nan_to_num(row[0].force) if is_known else None,
+                )
         if others:
             changes["nearest"] = _neighbours(specimen, others, known, model, options | {"rig": rig})
         return replace(row[0], **changes)

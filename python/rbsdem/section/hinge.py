@@ -54,7 +54,7 @@ class Strip:
     y : float
         Of its centroid from mid-depth [m].
     area : float
-        To 1e-6 mm2, by which equal strips are known [m2].
+        [m2].
     """
 
     y: float
@@ -115,11 +115,10 @@ def strips_of(
     # A row is y and the area of the core of a strip, then y and the area of its cover. Slivers
     # along the rim of the core are round-off.
     least = 1e-9 * section.gross_area
-    core, cover = answer.rows[:, :2].tolist(), answer.rows[:, 2:].tolist()
-    left, right, *pressures = answer.values.tolist()
+    strips, (left, right, *pressures) = answer.rows, answer.values.tolist()
     return Strips(
-        core=tuple(Strip(y, round(part, 12)) for y, part in core if part > least),
-        cover=tuple(Strip(y, round(part, 12)) for y, part in cover if part > least),
+        core=tuple(Strip(y, part) for y, part in strips[:, :2].tolist() if part > least),
+        cover=tuple(Strip(y, part) for y, part in strips[:, 2:].tolist() if part > least),
         confining_stress=(left, right),
         hoop_pressure=(pressures[0], pressures[1]),
     )
@@ -275,12 +274,15 @@ def hinge_joint(
     ]
     cover_slope = 0.8 * strength / 0.004
     plain = strength, peak, model.cover_softening * cover_slope
-    # Most strips are alike, and so are most bars: what is the same is made once.
+    # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     made: dict[Any, Spring] = {}
     layers = [
-        (strip.y, _once(made, concrete, strip.area, confined[strip.y > 0])) for strip in strips.core
+        (strip.y, _once(made, concrete, round(strip.area, 12), confined[strip.y > 0]))
+        for strip in strips.core
     ]
-    layers += [(strip.y, _once(made, concrete, strip.area, plain)) for strip in strips.cover]
+    layers += [
+        (strip.y, _once(made, concrete, round(strip.area, 12), plain)) for strip in strips.cover
+    ]
     high = min(axial_load / section.gross_area / 40e6, 1.5)
     slip, growth = model.slip_length * bond, model.isotropic_hardening * _growing(section, ratio)
     buckles = model.buckling > 0 and model.fatigue > 0

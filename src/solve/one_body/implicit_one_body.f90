@@ -203,7 +203,7 @@ contains
       taken = .false.
       self%stuck = .false.
       self%events = 0
-      ! What the start of the step gives to the motion, and to the balance
+      ! Shares of the start of the step in the motion, and in the balance
       self%before(1) = self%h*self%v0(1) + (self%h**2*(0.5_wp - self%beta))*self%a0(1)
       self%before(2) = self%h*self%v0(2) + (self%h**2*(0.5_wp - self%beta))*self%a0(2)
       self%carried(1) = self%alpha_f*self%g0(1) - self%mass(1)*(self%alpha_m*self%a0(1))

@@ -337,7 +337,7 @@ contains
    end subroutine report_no_path
 
    !> Corrections that take the springs to equilibrium at the present displacement of the top under the
-   !> present axial load. What the path drives is set back afterwards.
+   !> present axial load. The driven force or displacement is set back afterwards.
    subroutine find_balance(self, by_force, correction, force, found)
       class(curved_path), intent(inout) :: self
       !> False on a curved path, which holds the displacement and not the force

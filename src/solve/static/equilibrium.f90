@@ -208,7 +208,7 @@ contains
       type(spring_array), intent(in) :: springs
       !> Whether the force is driven, else the displacement
       logical, intent(in) :: by_force
-      !> What the springs lack of the displacement [m]; lateral force [N], or share of the dead load
+      !> Displacement that the springs lack [m]; lateral force [N], or share of the dead load
       real(wp), intent(in) :: residual, force
       !> Rates of the position (coordinates)
       real(wp), intent(inout), contiguous :: rate(:)
